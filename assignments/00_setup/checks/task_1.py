@@ -1,10 +1,10 @@
 """Task 00.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Number, Tolerance, check
+from photograd_course.grading import Array, Number, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients
+
+check = checks_for(calls=("loss_gradient",))
 
 ROUNDING = Tolerance(
     1e-12, "two ways to write the same quotient differ by 2e-16, the nearest wrong one by 0.5"
@@ -13,9 +13,7 @@ ROUNDING = Tolerance(
 
 @check(
     "00.1.differences",
-    task="00.1",
     points=1,
-    calls=("loss_gradient",),
     hint="handout, section 1: derive one square, divide as the mean does",
     sole="the derivative itself; the step below shows the same mistakes at work",
 )
@@ -32,9 +30,7 @@ def agrees_with_differences(t):
 
 @check(
     "00.1.step",
-    task="00.1",
     points=1,
-    calls=("loss_gradient",),
     tolerance=ROUNDING,
     sole="the same mistakes as a step downhill shows them: why they matter",
 )

@@ -1,22 +1,20 @@
 """Task 01.1, public checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Tolerance, checks_for
 
 from .common import rotated_bowl
+
+check = checks_for(calls=("numeric_derivative",))
 
 DIFFERENCE = Tolerance(1e-11, "right answers differ by at most 1.3e-14, wrong ones by 0.15 or more")
 
 
 @check(
     "01.1.quadratic",
-    task="01.1",
     points=4,
-    calls=("numeric_derivative",),
     tolerance=DIFFERENCE,
     sole="what students can run; hidden checks find its mistakes as well",
     hint="Move one coordinate at a time, both ways, and come back: Eq. (3).",
@@ -39,9 +37,7 @@ def central_differences_are_exact_for_quadratics(t):
 
 @check(
     "01.1.order",
-    task="01.1",
     points=4,
-    calls=("numeric_derivative",),
     sole="the order is what the handout is about; a wrong order fails a hidden check, too",
     hint="Halve eps: the error should fall to a quarter, Eq. (4).",
 )

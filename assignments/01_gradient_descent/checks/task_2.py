@@ -1,18 +1,16 @@
 """Task 01.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, walk
+
+check = checks_for(calls=("gd_1d",))
 
 
 @check(
     "01.2.rate",
-    task="01.2",
     points=4,
-    calls=("gd_1d",),
     tolerance=EXACT,
     sole="what students can run; hidden checks find its mistakes as well",
     hint="Each step multiplies the distance to the minimum by the same factor, Eq. (6).",
@@ -39,9 +37,7 @@ def a_parabola_contracts_by_one_factor(t):
 
 @check(
     "01.2.verdict",
-    task="01.2",
     points=3,
-    calls=("gd_1d",),
     sole="what students can run; hidden checks find its mistakes as well",
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )

@@ -1,18 +1,16 @@
 """Task 01.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, rotated_bowl, walk
+
+check = checks_for(calls=("gd_nd",))
 
 
 @check(
     "01.3.rates",
-    task="01.3",
     points=4,
-    calls=("gd_nd",),
     tolerance=EXACT,
     hint="Take the gradient once, at the old point, and move all coordinates with it.",
     sole="what students can run; hidden checks find its mistakes as well",
@@ -31,9 +29,7 @@ def each_eigenvector_has_a_factor_of_its_own(t):
 
 @check(
     "01.3.stability",
-    task="01.3",
     points=4,
-    calls=("gd_nd",),
     hint="If 01.3.rates fails too, repair that first. The verdict compares the last value with the "
     "first, Eq. (8).",
 )

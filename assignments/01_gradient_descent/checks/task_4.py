@@ -1,19 +1,16 @@
 """Task 01.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("momentum",), tolerance=EXACT)
 
 
 @check(
     "01.4.constant",
-    task="01.4",
     points=4,
-    calls=("momentum",),
-    tolerance=EXACT,
     sole="arithmetic that a student can do by hand; the others need the walk to bend",
     hint="With a constant gradient the steps grow towards tau g / (1 - beta), Eq. (14).",
 )
@@ -28,10 +25,7 @@ def a_constant_slope_leads_to_a_terminal_velocity(t):
 
 @check(
     "01.4.plain",
-    task="01.4",
     points=3,
-    calls=("momentum",),
-    tolerance=EXACT,
     hint="With beta = 0 there is no memory: the walk is that of gradient descent.",
 )
 def without_memory_it_is_gradient_descent(t):

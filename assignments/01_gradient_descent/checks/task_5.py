@@ -1,11 +1,11 @@
 """Task 01.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, asks, check
+from photograd_course.grading import Array, asks, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("adam",), tolerance=EXACT)
 
 
 def scripted(gradients):
@@ -24,10 +24,7 @@ def scripted(gradients):
 
 @check(
     "01.5.constant",
-    task="01.5",
     points=3,
-    calls=("adam",),
-    tolerance=EXACT,
     sole="arithmetic that a student can do by hand: all corrections cancel",
     hint="With a constant gradient m_hat = g and v_hat = g^2 in every step, Eq. (21).",
 )
@@ -57,10 +54,7 @@ TRACE_POINTS = np.array(
 
 @check(
     "01.5.trace",
-    task="01.5",
     points=5,
-    calls=("adam",),
-    tolerance=EXACT,
     sole="the five steps that the handout prints, so that a student can find the first wrong",
     hint="Print m, v, m_hat and v_hat for each of the five steps beside the table.",
 )

@@ -1,13 +1,13 @@
 """Task 01.6, public checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import CheckFailed, Number, check
+from photograd_course.grading import CheckFailed, Number, checks_for
 
 from .common import EXACT, rotated_bowl
+
+check = checks_for(calls=("backtracking",))
 
 
 class Patient:
@@ -29,9 +29,7 @@ class Patient:
 
 @check(
     "01.6.armijo",
-    task="01.6",
     points=4,
-    calls=("backtracking",),
     tolerance=EXACT,
     hint="The right-hand side of Eq. (22) falls with tau, along the direction you were given.",
 )
@@ -78,9 +76,7 @@ def the_step_is_the_first_that_keeps_its_promise(t):
 
 @check(
     "01.6.refuses",
-    task="01.6",
     points=2,
-    calls=("backtracking",),
     hint="Raise ValueError unless the slope along d is negative; NaN is not negative.",
 )
 def a_direction_uphill_is_refused(t):

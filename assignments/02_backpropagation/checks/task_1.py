@@ -1,20 +1,13 @@
 """Task 02.1, public checks."""
 
-from __future__ import annotations
-
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, SLOPES, away, gates_spec, require_slopes
 
+check = checks_for(calls=("Value.__add__", "Value.__mul__"))
 
-@check(
-    "02.1.values",
-    task="02.1",
-    points=2,
-    calls=("Value.__add__", "Value.__mul__"),
-    tolerance=EXACT,
-    sole="tells a wrong value from a wrong slope",
-)
+
+@check("02.1.values", points=2, tolerance=EXACT, sole="tells a wrong value from a wrong slope")
 def sums_and_products_have_their_value(t):
     """Sums and products have the right value, with a plain number on either side too."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 0.5, 3.0, 6)
@@ -23,13 +16,7 @@ def sums_and_products_have_their_value(t):
         t.close(f"values of {op}", found["values"], right, reveal=True)
 
 
-@check(
-    "02.1.slopes",
-    task="02.1",
-    points=4,
-    calls=("Value.__add__", "Value.__mul__"),
-    sole="names the gate; whole graphs fail too",
-)
+@check("02.1.slopes", points=4, sole="names the gate; whole graphs fail too")
 def slopes_of_sums_and_products(t):
     """A sum and a product note the slope towards each input (against differences)."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 4.0, 6.0, 6)
@@ -39,9 +26,7 @@ def slopes_of_sums_and_products(t):
 
 @check(
     "02.1.square",
-    task="02.1",
     points=3,
-    calls=("Value.__add__", "Value.__mul__"),
     tolerance=EXACT,
     sole="the same value on both sides; the worked graph fails too, for its x * x",
 )

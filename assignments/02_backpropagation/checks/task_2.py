@@ -1,21 +1,14 @@
 """Task 02.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, SLOPES, away, gates_spec, require_slopes
 
+check = checks_for(calls=("Value.maximum",), tolerance=EXACT)
 
-@check(
-    "02.2.routes",
-    task="02.2",
-    points=4,
-    calls=("Value.maximum",),
-    tolerance=EXACT,
-    sole="names the gate; whole graphs fail too",
-)
+
+@check("02.2.routes", points=4, sole="names the gate; whole graphs fail too")
 def the_larger_input_takes_all(t):
     """maximum has the larger value, and only the larger input gets a slope."""
     a = away(t.rng, 0.5, 3.0, 8)
@@ -25,7 +18,7 @@ def the_larger_input_takes_all(t):
     require_slopes(t, "max", a, b)
 
 
-@check("02.2.tie", task="02.2", points=3, calls=("Value.maximum",), tolerance=EXACT)
+@check("02.2.tie", points=3)
 def a_tie_is_settled(t):
     """At a tie the second input takes all; no differences here, they would give 1/2 and 1/2."""
     x = float(t.rng.uniform(1.5, 3.0))

@@ -1,11 +1,11 @@
 """Task 02.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Integer, Record, Truth, check
+from photograd_course.grading import Array, Integer, Record, Truth, checks_for
 
 from .common import ordered, random_edges, reachable
+
+check = checks_for(calls=("topo_order",))
 
 END = -2  # see adapters.order_of
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
@@ -58,9 +58,7 @@ def require_order(t, edges, root):
 
 @check(
     "02.4.order",
-    task="02.4",
     points=5,
-    calls=("topo_order",),
     sole="`backward` gets its order given, so this alone looks at it in detail",
 )
 def inputs_stand_before_their_users(t):
@@ -106,7 +104,7 @@ def require_work(t, edges, what):
     )
 
 
-@check("02.4.chain", task="02.4", points=4, calls=("topo_order",), seconds=20.0)
+@check("02.4.chain", points=4, seconds=20.0)
 def a_chain_of_a_hundred_thousand(t):
     """A chain of 100,000 values is put in order, without a recursion error."""
     require_work(t, chain(1500), "a chain")

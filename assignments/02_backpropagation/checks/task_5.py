@@ -1,11 +1,11 @@
 """Task 02.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Record, check
+from photograd_course.grading import Array, Record, checks_for
 
 from .common import DIFFERENCES, EXACT, STEP, away, random_edges, reachable
+
+check = checks_for(calls=("backward",), tolerance=EXACT)
 
 RUN = "adapters.run_graph"
 
@@ -37,14 +37,7 @@ WORKED = (  # program, inputs, value, gradients by the inputs
 )
 
 
-@check(
-    "02.5.worked",
-    task="02.5",
-    points=2,
-    calls=("backward",),
-    tolerance=EXACT,
-    sole="the numbers of the handout's figures, to compare by hand",
-)
+@check("02.5.worked", points=2, sole="the numbers of the handout's figures, to compare by hand")
 def the_graphs_of_the_handout(t):
     """(x + y) z of Figure 1 and four more graphs of the handout have the printed gradients."""
     for program, inputs, value, gradients in WORKED:
@@ -70,12 +63,7 @@ def run_by_hand(t, edges, roots, seeds, default_seed=False):
 
 
 @check(
-    "02.5.adds",
-    task="02.5",
-    points=4,
-    calls=("backward",),
-    tolerance=EXACT,
-    sole="gates and order are given here, so that the loop alone is at fault",
+    "02.5.adds", points=4, sole="gates and order are given here, so that the loop alone is at fault"
 )
 def contributions_of_all_uses_are_added(t):
     """Through each use of a value its gradient grows by slope times the user's gradient."""
@@ -85,7 +73,7 @@ def contributions_of_all_uses_are_added(t):
         t.close("gradients", got[0], path_sums(edges, 13, 1.0))
 
 
-@check("02.5.seed", task="02.5", points=2, calls=("backward",), tolerance=EXACT)
+@check("02.5.seed", points=2)
 def gradients_are_proportional_to_the_seed(t):
     """The seed multiplies all gradients, and a seed of zero gives zero."""
     edges = [[], [], [[0, 2.0], [1, -3.0]], [[2, 0.5], [0, 1.0]]]
@@ -96,7 +84,7 @@ def gradients_are_proportional_to_the_seed(t):
     t.require(not got.any(), "a seed of zero leaves gradients that are not zero")
 
 
-@check("02.5.again", task="02.5", points=3, calls=("backward",), tolerance=EXACT)
+@check("02.5.again", points=3)
 def a_second_call_starts_from_zero(t):
     """Called again, or from another root, backward gives what it gives the first time."""
     edges = random_edges(t.rng, 14)
@@ -213,10 +201,9 @@ def trusted_program(rng):
 
 @check(
     "02.5.expressions",
-    task="02.5",
     points=3,
-    calls=("backward",),
     sole="whole graphs through all gates, where students can look at them",
+    tolerance=None,
 )
 def expressions_agree_with_differences(t):
     """Gradients of ten random expressions agree with differences of your own forward values."""

@@ -1,11 +1,11 @@
 """Task 02.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Number, Tolerance, asks, check
+from photograd_course.grading import Array, Number, Tolerance, asks, checks_for
 
 from .common import away
+
+check = checks_for(calls=("grad_check",))
 
 REPORTED = Tolerance(
     2e-8, "differences, and so what is reported, are right to 1e-10; one-sided ones are off by 6e-7"
@@ -29,7 +29,7 @@ def smooth(rng, n):
     return f, rng.uniform(0.3, 1.5, n)
 
 
-@check("02.6.accepts", task="02.6", points=2, calls=("grad_check",))
+@check("02.6.accepts", points=2)
 def right_gradients_are_accepted(t):
     """Right gradients of smooth functions have an error close to 0, and x stays as it is."""
     for n in (1, 4, 7):
@@ -58,7 +58,7 @@ def right_gradients_are_accepted(t):
         t.require(calls <= 2 * n + 1, f"{calls} calls of f, {2 * n + 1} are enough")
 
 
-@check("02.6.rejects", task="02.6", points=3, calls=("grad_check",), tolerance=REPORTED)
+@check("02.6.rejects", points=3, tolerance=REPORTED)
 def wrong_gradients_are_measured(t):
     """The error of a wrong gradient is reported as Eq. (16) has it."""
     f, x = smooth(t.rng, 5)
@@ -86,9 +86,7 @@ def wrong_gradients_are_measured(t):
 
 @check(
     "02.6.large",
-    task="02.6",
     points=1,
-    calls=("grad_check",),
     sole="Eq. (15) where students can see it; the hidden check measures the steps",
 )
 def large_coordinates_move_further(t):
@@ -112,7 +110,7 @@ def large_coordinates_move_further(t):
     )
 
 
-@check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",))
+@check("02.6.not_finite", points=1)
 def not_a_number_is_refused(t):
     """What is not finite gives infinity, and a constant's gradient of zero the error 0."""
     f, x = smooth(t.rng, 3)

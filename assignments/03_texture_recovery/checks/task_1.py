@@ -1,19 +1,16 @@
 """Task 03.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT, centers
+
+check = checks_for(calls=("bilinear_sample",), tolerance=EXACT)
 
 
 @check(
     "03.1.centers",
-    task="03.1",
     points=2,
-    calls=("bilinear_sample",),
-    tolerance=EXACT,
     hint="handout, equation (3): which u belongs to column 0?",
     sole="says that the coordinates are right, whatever the weights",
 )
@@ -26,10 +23,7 @@ def a_center_gives_its_texel(t):
 
 @check(
     "03.1.ramp",
-    task="03.1",
     points=3,
-    calls=("bilinear_sample",),
-    tolerance=EXACT,
     hint="handout, equation (6): which texel belongs to which weight?",
     sole="says that the weights are right, on a picture one can draw",
 )
@@ -45,10 +39,7 @@ def a_ramp_stays_a_ramp(t):
 
 @check(
     "03.1.product",
-    task="03.1",
     points=2,
-    calls=("bilinear_sample",),
-    tolerance=EXACT,
     hint="handout, equation (6): four products of weights, and the texel of each",
     sole="what separates four weights from three",
 )
@@ -63,10 +54,7 @@ def a_product_stays_a_product(t):
 
 @check(
     "03.1.constant",
-    task="03.1",
     points=2,
-    calls=("bilinear_sample",),
-    tolerance=EXACT,
     hint="the four weights sum to 1 everywhere, at the border too",
     sole="a constant sees nothing but the sum of the weights",
 )
@@ -81,10 +69,7 @@ def a_constant_stays_constant(t):
 
 @check(
     "03.1.edge",
-    task="03.1",
     points=3,
-    calls=("bilinear_sample",),
-    tolerance=EXACT,
     hint="handout, equation (4): clamp the coordinate, then split it",
     sole="says that only the border is wrong",
 )

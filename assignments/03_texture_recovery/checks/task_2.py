@@ -1,20 +1,17 @@
 """Task 03.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_zero_for_zero
 
 from .common import EXACT, centers, sampling_matrix
 
+check = checks_for(calls=("bilinear_sample_adjoint",), tolerance=EXACT)
+
 
 @check(
     "03.2.single",
-    task="03.2",
     points=3,
-    calls=("bilinear_sample_adjoint",),
-    tolerance=EXACT,
     hint="handout, equation (7): g times the weight that the texel had",
     sole="asks about one sample, without the forward function",
 )
@@ -35,11 +32,8 @@ def one_sample_is_spread_around_its_place(t):
 
 @check(
     "03.2.transpose",
-    task="03.2",
     points=5,
-    calls=("bilinear_sample_adjoint",),
     needs=("bilinear_sample",),
-    tolerance=EXACT,
     hint="handout, section 2: the same weights as forwards, from sample to texel",
     sole="the definition of an adjoint",
 )
@@ -65,10 +59,7 @@ def is_the_transpose(t):
 
 @check(
     "03.2.repeated",
-    task="03.2",
     points=4,
-    calls=("bilinear_sample_adjoint",),
-    tolerance=EXACT,
     hint="d_T[rows, columns] += values adds once where an index occurs twice",
     sole="names the mistake of a scatter that forgets",
 )
@@ -91,10 +82,7 @@ def repeated_places_add_up(t):
 
 @check(
     "03.2.edge",
-    task="03.2",
     points=2,
-    calls=("bilinear_sample_adjoint",),
-    tolerance=EXACT,
     hint="clamp as forwards (which of u, v with which side?); equal indices add up",
     sole="says that only the border is wrong",
 )

@@ -1,12 +1,12 @@
 """Task 03.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, check
+from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients
 
 from .common import EXACT
+
+check = checks_for(calls=("loss_and_grad",))
 
 QUADRATIC = Tolerance(
     1e-6, "differences of a quadratic leave 6e-11, the nearest wrong one (grad_missing_two) 0.5"
@@ -15,9 +15,7 @@ QUADRATIC = Tolerance(
 
 @check(
     "03.3.value",
-    task="03.3",
     points=3,
-    calls=("loss_and_grad",),
     needs=("bilinear_sample",),
     tolerance=EXACT,
     hint="handout, equation (9): sum over channels, divide by N",
@@ -35,9 +33,7 @@ def the_loss_of_a_constant(t):
 
 @check(
     "03.3.differences",
-    task="03.3",
     points=5,
-    calls=("loss_and_grad",),
     tolerance=QUADRATIC,
     needs=("bilinear_sample", "bilinear_sample_adjoint"),
     hint="handout, equation (10): 2/N times the adjoint of the residuals",

@@ -1,11 +1,14 @@
 """Task 03.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Number, Tolerance, check
+from photograd_course.grading import Number, Tolerance, checks_for
 
 from .common import EXACT, centers, sampling_matrix
+
+check = checks_for(
+    calls=("largest_curvature",),
+    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
+)
 
 ESTIMATE = Tolerance(
     0.02, "300 rounds leave 2e-15, the nearest wrong one (curvature_missing_two) is off by 0.5"
@@ -14,11 +17,8 @@ ESTIMATE = Tolerance(
 
 @check(
     "03.4.rounds",
-    task="03.4",
     points=4,
-    calls=("largest_curvature",),
     tolerance=EXACT,
-    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
     hint="handout, equations (11) to (13): what stands after 0 rounds, after 1?",
     sole="says which round or factor is wrong; the estimate alone would not",
 )
@@ -35,11 +35,8 @@ def rounds_are_as_counted(t):
 
 @check(
     "03.4.bound",
-    task="03.4",
     points=3,
-    calls=("largest_curvature",),
     tolerance=ESTIMATE,
-    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
     hint="keep x at length 1: 300 rounds make anything else 0 or infinite",
     sole="asks what the function is for, after many rounds",
 )

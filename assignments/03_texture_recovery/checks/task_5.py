@@ -1,9 +1,7 @@
 """Task 03.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, agree, checks_for
 
 from .common import CHAINED, sampling_matrix
 
@@ -30,13 +28,12 @@ def recover(t, T0, uv, target, n):
 
 EARLIER = ("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad", "largest_curvature")
 
+check = checks_for(calls=("recover_texture",), needs=EARLIER)
+
 
 @check(
     "03.5.step",
-    task="03.5",
     points=3,
-    calls=("recover_texture",),
-    needs=EARLIER,
     tolerance=FIRST_STEP,
     hint="handout, equations (14) and (15)",
     sole="asks about the first step alone",
@@ -57,10 +54,7 @@ def the_first_step(t):
 
 @check(
     "03.5.chain",
-    task="03.5",
     points=2,
-    calls=("recover_texture",),
-    needs=EARLIER,
     tolerance=CHAINED,
     hint="the same step from first to last; losses of T0 to T",
     sole="counts steps and losses, whatever the step's length",
@@ -82,10 +76,7 @@ def steps_can_be_chained(t):
 
 @check(
     "03.5.start",
-    task="03.5",
     points=1,
-    calls=("recover_texture",),
-    needs=EARLIER,
     hint="T0 itself has changed: copy it first",
     sole="what students can run; hidden checks find its mistakes as well",
 )
@@ -101,10 +92,7 @@ def the_start_is_left_alone(t):
 
 @check(
     "03.5.unseen",
-    task="03.5",
     points=2,
-    calls=("recover_texture",),
-    needs=EARLIER,
     hint="which texels does any sample give weight? that does not depend on values",
     sole="asks about what no measurement reaches",
 )

@@ -1,11 +1,11 @@
 """Task 03.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Items, StudentFailure, check
+from photograd_course.grading import Array, CheckFailed, Items, StudentFailure, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("build_mips",), tolerance=EXACT)
 
 
 def pyramid(shape):
@@ -36,10 +36,7 @@ def mips(t, T):
 
 @check(
     "03.6.mean",
-    task="03.6",
     points=3,
-    calls=("build_mips",),
-    tolerance=EXACT,
     hint="handout, equation (16): each texel is the mean of those it replaces",
     sole="what a pyramid is for: the same light at each size",
 )
@@ -60,10 +57,7 @@ def each_level_has_the_same_mean(t):
 
 @check(
     "03.6.spot",
-    task="03.6",
     points=2,
-    calls=("build_mips",),
-    tolerance=EXACT,
     hint="rows 2 i and 2 i + 1 become row i",
     sole="where a texel goes; a mean does not see that",
 )

@@ -1,11 +1,11 @@
 """Task 04.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT, SHARP
+
+check = checks_for(calls=("furnace",), tolerance=EXACT)
 
 
 def room(t, value, channels, cosines):
@@ -40,10 +40,7 @@ def room(t, value, channels, cosines):
 
 @check(
     "04.1.matte",
-    task="04.1",
     points=3,
-    calls=("furnace",),
-    tolerance=EXACT,
     hint="equation (5): each direction has its own solid angle; one row (C,) for each viewer",
     sole="the one model whose albedo everybody knows",
 )
@@ -56,10 +53,7 @@ def a_matte_surface_returns_its_albedo(t):
 
 @check(
     "04.1.shapes",
-    task="04.1",
     points=3,
-    calls=("furnace",),
-    tolerance=EXACT,
     hint="the cosine is that of the light, wi; each direction has its own solid angle; one row "
     "for each viewer, whose wo is the same in all pairs of the sum",
     sole="each of the four sums wants another power of wi",
@@ -81,10 +75,7 @@ def models_with_a_known_integral(t):
 
 @check(
     "04.1.burley",
-    task="04.1",
     points=2,
-    calls=("furnace",),
-    tolerance=EXACT,
     hint="mend the checks above first",
     sole="the first discovery: a famous model that makes light",
 )

@@ -1,19 +1,16 @@
 """Task 04.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, TABLE, buried, densities, directions, dome, lobes, viewer
+
+check = checks_for(calls=("ggx_pdf",), needs=("ggx_lobe",))
 
 
 @check(
     "04.3.ball",
-    task="04.3",
     points=2,
-    calls=("ggx_pdf",),
-    needs=("ggx_lobe",),
     tolerance=EXACT,
     hint="at roughness 1: D = 1 / pi, and wo sees 2 o_z / (1 + o_z) of the facets turned to it",
     sole="the roughest surface in closed form",
@@ -27,10 +24,7 @@ def a_ball_spreads_evenly(t):
 
 @check(
     "04.3.mass",
-    task="04.3",
     points=3,
-    calls=("ggx_pdf",),
-    needs=("ggx_lobe",),
     tolerance=TABLE,
     hint="turning a facet by an angle turns the mirrored direction by two: equation (12)",
     sole="a density is known by its integral",
@@ -45,10 +39,7 @@ def what_stays_above(t):
 
 @check(
     "04.3.weight",
-    task="04.3",
     points=3,
-    calls=("ggx_pdf",),
-    needs=("ggx_lobe",),
     tolerance=EXACT,
     hint="a sample's weight is the share of the facets seen that the light sees, too",
     sole="what the sampler is good for: no sample counts more than 1",
@@ -73,10 +64,7 @@ def weights_are_shares(t):
 
 @check(
     "04.3.below",
-    task="04.3",
     points=1,
-    calls=("ggx_pdf",),
-    needs=("ggx_lobe",),
     hint="where a direction is not above the surface the density is exactly 0",
     sole="half of all directions",
 )

@@ -1,13 +1,13 @@
 """Task 04.4, public checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, check
+from photograd_course.grading import Array, CheckFailed, checks_for
 
 from .common import EXACT, densities, directions, dome, lobes, turned, viewer
+
+check = checks_for(calls=("sample_ggx",))
 
 LEVEL = 3e-4  # of one judgement; seven draws are judged
 
@@ -89,9 +89,7 @@ def compare_samples(t, wo, r, shares):
 
 @check(
     "04.4.mirror",
-    task="04.4",
     points=2,
-    calls=("sample_ggx",),
     tolerance=EXACT,
     hint="mirror: wi = 2 (wo . h) h - wo, with h a unit vector that has z > 0 and wo . h > 0",
     sole="what every single sample must satisfy",
@@ -109,9 +107,7 @@ def samples_are_mirrored_at_facets(t):
 
 @check(
     "04.4.rows",
-    task="04.4",
     points=1,
-    calls=("sample_ggx",),
     tolerance=EXACT,
     hint="nothing may be drawn in the function: the two numbers of a row decide about it",
     sole="the same numbers, the same directions: what debugging rests upon",
@@ -129,9 +125,7 @@ def numbers_decide(t):
 
 @check(
     "04.4.chi",
-    task="04.4",
     points=4,
-    calls=("sample_ggx",),
     needs=("ggx_lobe", "ggx_pdf"),
     hint="handout, equations (14) to (16); compare your samples with Figure 3",
     sole="the definition: samples lie as densely as the density says",
@@ -153,9 +147,7 @@ def samples_have_the_density(t):
 
 @check(
     "04.4.mean",
-    task="04.4",
     points=2,
-    calls=("sample_ggx",),
     needs=("ggx_lobe", "ggx_pdf"),
     hint="mend 04.4.chi first",
     sole="what it is for: the mean of the weights is the furnace's albedo",

@@ -1,20 +1,16 @@
 """Task 04.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, TABLE, buried, directions, dome, lobes, material, shaded, viewer
+
+check = checks_for(calls=("gltf",), needs=("ggx_lobe",), tolerance=EXACT)
 
 
 @check(
     "04.5.straight",
-    task="04.5",
     points=3,
-    calls=("gltf",),
-    needs=("ggx_lobe",),
-    tolerance=EXACT,
     hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base color for metal",
     sole="ground, varnish and metal, each with a number of its own",
 )
@@ -34,11 +30,7 @@ def straight_on(t):
 
 @check(
     "04.5.mirror",
-    task="04.5",
     points=2,
-    calls=("gltf",),
-    needs=("ggx_lobe",),
-    tolerance=EXACT,
     hint="a white metal reflects all at every angle: what is left is the lobe",
     sole="all angles, where Schlick's ramp has nothing to say",
 )
@@ -56,11 +48,7 @@ def white_metal_is_the_lobe(t):
 
 @check(
     "04.5.blend",
-    task="04.5",
     points=2,
-    calls=("gltf",),
-    needs=("ggx_lobe",),
-    tolerance=EXACT,
     hint="equation (20): blend the finished values, not what goes into them",
     sole="the trap of section 5",
 )
@@ -76,11 +64,7 @@ def half_metal_is_half_of_each(t):
 
 @check(
     "04.5.symmetry",
-    task="04.5",
     points=1,
-    calls=("gltf",),
-    needs=("ggx_lobe",),
-    tolerance=EXACT,
     hint="the angle of Fresnel's factor is that to the half vector; below the surface all is 0",
     sole="reciprocity, and nothing below",
 )
@@ -97,10 +81,7 @@ def reciprocal_and_above(t):
 
 @check(
     "04.5.energy",
-    task="04.5",
     points=1,
-    calls=("gltf",),
-    needs=("ggx_lobe",),
     tolerance=TABLE,
     hint="mend the checks above first",
     sole="what the furnace says: half metal lies between its ends",

@@ -1,9 +1,7 @@
 """Task 04.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, buried, directions, material, shaded, viewer
+
+check = checks_for(calls=("gltf_backward",), needs=("ggx_lobe", "gltf"), tolerance=EXACT)
 
 SMOOTH = Tolerance(
     1e-6, "central differences leave 4e-9, the nearest wrong one (back_color_no_ramp) 0.0014"
@@ -38,10 +38,7 @@ def near_mirrors(rng, n):
 
 @check(
     "04.6.differences",
-    task="04.6",
     points=5,
-    calls=("gltf_backward",),
-    needs=("ggx_lobe", "gltf"),
     tolerance=SMOOTH,
     hint="handout, section 6: first color and metalness, then the logarithm of D V",
     sole="the derivative itself, without the reference",
@@ -62,11 +59,7 @@ def agrees_with_differences(t):
 
 @check(
     "04.6.straight",
-    task="04.6",
     points=2,
-    calls=("gltf_backward",),
-    needs=("ggx_lobe", "gltf"),
-    tolerance=EXACT,
     hint="roughness^-4 has the derivative -4 roughness^-5; alpha is the roughness squared",
     sole="the roughness alone, where it can be worked out by head",
 )
@@ -83,11 +76,7 @@ def the_peak_sinks(t):
 
 @check(
     "04.6.linear",
-    task="04.6",
     points=3,
-    calls=("gltf_backward",),
-    needs=("ggx_lobe", "gltf"),
-    tolerance=EXACT,
     hint="f is a constant plus something times the base color; and linear in the metalness",
     sole="all digits, where differences have nine",
 )
@@ -107,11 +96,7 @@ def color_and_metalness_are_linear(t):
 
 @check(
     "04.6.zero",
-    task="04.6",
     points=2,
-    calls=("gltf_backward",),
-    needs=("ggx_lobe", "gltf"),
-    tolerance=EXACT,
     hint="below the surface f is 0 whatever the parameters; rows do not know of each other",
     sole="what must not leak: below the surface, and from row to row",
 )

@@ -1,11 +1,11 @@
 """Task 05.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Tolerance, check
+from photograd_course.grading import Tolerance, checks_for
 
 from .common import EXACT, T_MIN, Distances, lengths, same_hits, sphere, units
+
+check = checks_for(calls=("hit_sphere",), tolerance=EXACT)
 
 FAR = Tolerance(1e-5, "right ones are off by 1e-8, the quadratic formula by 1e-3")
 
@@ -36,10 +36,7 @@ def rays_within(t, count, center, radius):
 
 @check(
     "05.1.outside",
-    task="05.1",
     points=3,
-    calls=("hit_sphere",),
-    tolerance=EXACT,
     hint="handout, equation (5): from where the ray is nearest, h back",
     sole="where most rays come from",
 )
@@ -53,10 +50,7 @@ def spheres_from_outside(t):
 
 @check(
     "05.1.inside",
-    task="05.1",
     points=2,
-    calls=("hit_sphere",),
-    tolerance=EXACT,
     hint="handout, equation (6): where the first of the two does not count, take the second",
     sole="what refraction and shadows need",
 )
@@ -70,10 +64,7 @@ def spheres_from_inside(t):
 
 @check(
     "05.1.misses",
-    task="05.1",
     points=2,
-    calls=("hit_sphere",),
-    tolerance=EXACT,
     hint="nothing behind the origin is met, nor where h² < 0; a ray that touches meets",
     sole="what is not there must not be seen",
 )
@@ -104,9 +95,7 @@ def spheres_missed(t):
 
 @check(
     "05.1.far",
-    task="05.1",
     points=1,
-    calls=("hit_sphere",),
     tolerance=FAR,
     hint="handout, end of section 1: subtract places before you square them",
 )

@@ -1,11 +1,11 @@
 """Task 05.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 
 from .common import EXACT, T_MIN, Distances, lengths, same_hits, units
+
+check = checks_for(calls=("hit_triangle",))
 
 
 def triangles(t, origin, direction, corners):
@@ -44,9 +44,7 @@ def outer_parts(t, count):
 
 @check(
     "05.2.inside",
-    task="05.2",
     points=4,
-    calls=("hit_triangle",),
     tolerance=EXACT,
     hint="handout, equations (8) and (9): volumes over their sum are the weights",
     sole="t and the weights, from both sides",
@@ -63,9 +61,7 @@ def places_inside_triangles(t):
 
 @check(
     "05.2.misses",
-    task="05.2",
     points=3,
-    calls=("hit_triangle",),
     tolerance=EXACT,
     hint="all three volumes have one sign, and t is above T_MIN",
     sole="what is not there must not be seen",
@@ -110,9 +106,7 @@ def sheet(t, n, jitter):
 
 @check(
     "05.2.edges",
-    task="05.2",
     points=4,
-    calls=("hit_triangle",),
     hint="handout, section 2: on an edge both have one number with two signs, and 0 counts",
     sole="light must not leak between two triangles",
 )

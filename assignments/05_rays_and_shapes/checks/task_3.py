@@ -1,11 +1,11 @@
 """Task 05.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 
 from .common import EXACT, units
+
+check = checks_for(calls=("refract",), tolerance=EXACT)
 
 
 def refracted(t, directions, normals, eta):
@@ -30,10 +30,7 @@ def arrivals(t, count, most=1.5, inside=False):
 
 @check(
     "05.3.snell",
-    task="05.3",
     points=4,
-    calls=("refract",),
-    tolerance=EXACT,
     hint="handout, equations (10) and (11): the part along the surface is divided by the ratio",
     sole="the law itself, from both sides",
 )
@@ -65,10 +62,7 @@ def snells_law(t):
 
 @check(
     "05.3.back",
-    task="05.3",
     points=2,
-    calls=("refract",),
-    tolerance=EXACT,
     hint="the way back is the way there: from inside the ratio is 1 / eta",
     sole="light goes back the way it came",
 )
@@ -84,10 +78,7 @@ def light_goes_back(t):
 
 @check(
     "05.3.total",
-    task="05.3",
     points=3,
-    calls=("refract",),
-    tolerance=EXACT,
     hint="handout, equation (12): where (11) has no root everything is mirrored",
     sole="the critical angle",
 )

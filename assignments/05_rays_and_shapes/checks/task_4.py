@@ -1,12 +1,12 @@
 """Task 05.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.failures import CheckFailed
 
 from .common import CLOSE, Distances, same_hits, sphere, units
+
+check = checks_for(calls=("march_sdf",))
 
 MARCHED = Tolerance(1e-7, "a march stops 1e-9 short at most, wrong ones by 1e-2 or more")
 SLOPES = Tolerance(1e-4, "differences leave 1e-6, wrong ones are off by 1e-1 or more")
@@ -94,9 +94,7 @@ def past_ball(t, count, center, radius):
 
 @check(
     "05.4.met",
-    task="05.4",
     points=4,
-    calls=("march_sdf",),
     tolerance=MARCHED,
     hint="handout, equation (13): go ahead by |f|, from inside too; nothing can be nearer",
     sole="that the surface is found, and only it",
@@ -138,9 +136,7 @@ def differences(t, make, origins, directions, eps=1e-2):
 
 @check(
     "05.4.derivative",
-    task="05.4",
     points=5,
-    calls=("march_sdf",),
     tolerance=SLOPES,
     hint="handout, equation (15): the place is held on the surface while p changes",
     sole="the gate: differences of the submission's own march",
@@ -173,9 +169,7 @@ def the_derivative_of_a_hit(t):
 
 @check(
     "05.4.cost",
-    task="05.4",
     points=3,
-    calls=("march_sdf",),
     hint="ask only for rays that are neither there nor beyond t_max, at most `steps` times",
     sole="questions are counted, not seconds",
 )

@@ -1,11 +1,11 @@
 """Task 05.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, LEAF, built
+
+check = checks_for(calls=("build_bvh",))
 
 
 def some_boxes(t, count, stretch=(1.0, 1.0, 1.0)):
@@ -34,9 +34,7 @@ SIZES = (1, 2, 3, 7, 40)
 
 @check(
     "05.5.boxes",
-    task="05.5",
     points=4,
-    calls=("build_bvh",),
     tolerance=EXACT,
     hint="handout, equation (16): the smallest corner of all, and the largest",
     sole="a box that is too small loses things, one too large costs",
@@ -53,9 +51,7 @@ def boxes_fit(t):
 
 @check(
     "05.5.halves",
-    task="05.5",
     points=2,
-    calls=("build_bvh",),
     hint="handout, equation (17): half of the things to each side, down to LEAF",
     sole="no path is longer than the logarithm",
 )
@@ -73,9 +69,7 @@ def halves_are_equal(t):
 
 @check(
     "05.5.axis",
-    task="05.5",
     points=3,
-    calls=("build_bvh",),
     hint="cut across the axis on which the middles of the boxes are spread most",
     sole="halves that lie apart are what lets a ray skip one",
 )

@@ -1,12 +1,12 @@
 """Task 05.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Items, check
+from photograd_course.grading import Items, checks_for
 from photograd_course.grading.failures import CheckFailed
 
 from .common import EXACT, Distances, Scene, Whole, built, lengths, units
+
+check = checks_for(calls=("traverse",), needs=("build_bvh",))
 
 
 class Distance:
@@ -68,10 +68,7 @@ def right_answer(t, scene, got, hint=""):
 
 @check(
     "05.6.nearest",
-    task="05.6",
     points=4,
-    calls=("traverse",),
-    needs=("build_bvh",),
     hint="handout, equation (19): a box may be skipped only if it is missed or begins behind "
     "the best so far",
     sole="the same answer as from asking everything",
@@ -92,10 +89,7 @@ def the_nearest_of_all(t):
 
 @check(
     "05.6.axes",
-    task="05.6",
     points=3,
-    calls=("traverse",),
-    needs=("build_bvh",),
     hint="where a component of the direction is 0, the origin is between both faces or not",
     sole="what random rays never do, and those of a camera always",
 )
@@ -132,10 +126,7 @@ def lanes(t, rows, deep):
 
 @check(
     "05.6.cost",
-    task="05.6",
     points=3,
-    calls=("traverse",),
-    needs=("build_bvh",),
     hint="handout, equation (20): the nearer box first, and what begins behind the best, never",
     sole="what a tree is for: questions are counted, not seconds",
 )
@@ -170,10 +161,7 @@ def few_boxes_are_asked_for(t):
 
 @check(
     "05.6.growth",
-    task="05.6",
     points=2,
-    calls=("traverse",),
-    needs=("build_bvh",),
     hint="16 times as many things are four more levels, not 16 times as many boxes",
     sole="growth, by counts",
 )
@@ -276,9 +264,7 @@ EMBREE_T = (
 
 @check(
     "05.6.embree",
-    task="05.6",
     points=2,
-    calls=("traverse",),
     needs=("build_bvh", "hit_triangle"),
     tolerance=EXACT,
     hint="traverse on triangles: the other checks of this task are simpler",

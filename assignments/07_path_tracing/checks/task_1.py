@@ -1,13 +1,13 @@
 """Task 07.1, public checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Tolerance, checks_for
 
 from .common import EXACT, UP, corners_of, flake, nodes, scene_of, ways
+
+check = checks_for(calls=("light_pdf",))
 
 NODES = Tolerance(1e-7, "16 nodes an axis leave 1e-9, wrong ones are off by 0.1 or more")
 
@@ -53,9 +53,7 @@ def towards(scene, thing, point, uv):
 
 @check(
     "07.1.straight",
-    task="07.1",
     points=2,
-    calls=("light_pdf",),
     tolerance=EXACT,
     hint="equation (6): straight ahead the cosine is 1, and what is left is "
     "distance squared over area, for one of K lamps",
@@ -74,9 +72,7 @@ def straight_below(t):
 
 @check(
     "07.1.solid_angle",
-    task="07.1",
     points=4,
-    calls=("light_pdf",),
     tolerance=NODES,
     hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
     "away four times smaller",
@@ -99,9 +95,7 @@ def densities_know_the_solid_angle(t):
 
 @check(
     "07.1.none",
-    task="07.1",
     points=2,
-    calls=("light_pdf",),
     hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
     sole="what is never drawn has density 0",
 )

@@ -1,11 +1,11 @@
 """Task 07.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("mis_weight",), tolerance=EXACT)
 
 
 def weights_of(t, pdf, other):
@@ -15,10 +15,7 @@ def weights_of(t, pdf, other):
 
 @check(
     "07.2.values",
-    task="07.2",
     points=3,
-    calls=("mis_weight",),
-    tolerance=EXACT,
     hint="equation (7): the squares of densities",
     sole="three numbers that can be worked out by head",
 )
@@ -31,10 +28,7 @@ def known_weights(t):
 
 @check(
     "07.2.sum",
-    task="07.2",
     points=2,
-    calls=("mis_weight",),
-    tolerance=EXACT,
     hint="what one strategy leaves is the other one's",
     sole="no light is counted twice, and none forgotten",
 )
@@ -48,10 +42,7 @@ def weights_sum_to_one(t):
 
 @check(
     "07.2.extremes",
-    task="07.2",
     points=2,
-    calls=("mis_weight",),
-    tolerance=EXACT,
     hint="divide by the larger of the two before you square",
     sole="mirrors have densities without bound, and what cannot be drawn has none",
 )

@@ -1,9 +1,7 @@
 """Task 07.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import (
     TASK_3,
@@ -19,6 +17,8 @@ from .common import (
     scene_of,
     ways,
 )
+
+check = checks_for(calls=("direct_light",), needs=TASK_3)
 
 TWICE = (
     "twice as bright as it should be: the light is counted in full by both strategies; "
@@ -40,10 +40,7 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
 
 @check(
     "07.3.matte",
-    task="07.3",
     points=4,
-    calls=("direct_light",),
-    needs=TASK_3,
     hint="equations (8) to (10): reflectance times cosine times radiance, over "
     "the density of the strategy that has drawn it, by its weight; weights sum to 1",
     sole="the irradiance from a rectangle has been known since Lambert",
@@ -65,10 +62,7 @@ def light_from_a_rectangle(t):
 
 @check(
     "07.3.furnace",
-    task="07.3",
     points=4,
-    calls=("direct_light",),
-    needs=TASK_3,
     hint="in a room of radiance 1 direct light is the albedo: both strategies "
     "together must count every direction once",
     sole="the integral of assignment 04, with all directions lit",
@@ -82,10 +76,7 @@ def a_bright_room_shows_the_albedo(t):
 
 @check(
     "07.3.proposal",
-    task="07.3",
     points=3,
-    calls=("direct_light",),
-    needs=TASK_3,
     hint="directions, densities and weights by `proposal`, reflectance by `scene`",
     sole="the mean does not depend on how samples are drawn",
 )
@@ -107,10 +98,7 @@ def another_proposal_has_the_same_mean(t):
 
 @check(
     "07.3.dark",
-    task="07.3",
     points=2,
-    calls=("direct_light",),
-    needs=TASK_3,
     hint="what counts is the first thing that is met along the direction, and it must "
     "be the lamp that was drawn",
     sole="shadows",

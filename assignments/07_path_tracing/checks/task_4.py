@@ -1,11 +1,11 @@
 """Task 07.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("roulette",), tolerance=EXACT)
 
 
 def played(t, beta, u):
@@ -16,10 +16,7 @@ def played(t, beta, u):
 
 @check(
     "07.4.values",
-    task="07.4",
     points=2,
-    calls=("roulette",),
-    tolerance=EXACT,
     hint="equations (11) and (12): the brightest channel decides, u < q goes on",
     sole="one path that goes on and one that ends",
 )
@@ -45,10 +42,7 @@ def known_ends(t):
 
 @check(
     "07.4.mean",
-    task="07.4",
     points=3,
-    calls=("roulette",),
-    tolerance=EXACT,
     hint="who goes on carries 1 / q, for those who do not",
     sole="roulette must not change the mean",
 )
@@ -63,10 +57,7 @@ def the_mean_is_kept(t):
 
 @check(
     "07.4.ends",
-    task="07.4",
     points=2,
-    calls=("roulette",),
-    tolerance=EXACT,
     hint="q is at most 1; and where q is 0 nothing may be divided by it",
     sole="bright paths stay as they are, and dark ones end",
 )

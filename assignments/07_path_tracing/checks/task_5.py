@@ -1,9 +1,7 @@
 """Task 07.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import (
     EXACT,
@@ -21,6 +19,8 @@ from .common import (
 
 TASK_5 = (*TASK_3, "direct_light", "roulette")
 
+check = checks_for(calls=("trace_paths",), needs=TASK_5)
+
 
 def traced(t, scene, origins, directions, depth):
     seed = int(t.rng.integers(2**31))
@@ -30,10 +30,7 @@ def traced(t, scene, origins, directions, depth):
 
 @check(
     "07.5.emitted",
-    task="07.5",
     points=2,
-    calls=("trace_paths",),
-    needs=TASK_5,
     tolerance=EXACT,
     hint="a path of one piece ends at a lamp, or brings nothing",
     sole="what is seen by itself, exactly",
@@ -74,10 +71,7 @@ MORE = "a piece too many: direct light is asked for depth - 1 times"
 
 @check(
     "07.5.integral",
-    task="07.5",
     points=3,
-    calls=("trace_paths",),
-    needs=TASK_5,
     hint="two straight pieces are direct light and what is emitted, nothing else",
     sole="depth two is the integral of assignment 04",
 )
@@ -129,10 +123,7 @@ def depth_two(t):
 
 @check(
     "07.5.corner",
-    task="07.5",
     points=2,
-    calls=("trace_paths",),
-    needs=TASK_5,
     hint="three pieces: the direction of the material leads to the wall, and there "
     "direct light is asked for again, times what the floor reflects of it",
     sole="light from where the path went, and from nowhere else",
@@ -181,10 +172,7 @@ def rays_inside(t, n):
 
 @check(
     "07.5.furnace",
-    task="07.5",
     points=4,
-    calls=("trace_paths",),
-    needs=TASK_5,
     hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
     "multiplies once, and lamps that a path finds by chance are counted already",
     sole="a room whose light is a geometric series",

@@ -1,9 +1,7 @@
 """Task 07.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_cheap,
@@ -23,6 +21,8 @@ from .common import (
     scene_of,
     ways,
 )
+
+check = checks_for(calls=("direct_light_backward",), needs=(*TASK_3, "direct_light"))
 
 GATE = Tolerance(1e-6, "central differences leave 1e-9, wrong ones are off by 1e-3 or more")
 
@@ -55,10 +55,7 @@ def small_scene(t, n):
 
 @check(
     "07.6.differences",
-    task="07.6",
     points=5,
-    calls=("direct_light_backward",),
-    needs=(*TASK_3, "direct_light"),
     tolerance=GATE,
     hint="equation (17): reflectance is differentiated, all that was drawn stays",
     sole="the definition: your own direct light, its proposal held fixed",
@@ -83,9 +80,7 @@ ROWS = (
 
 @check(
     "07.6.zero",
-    task="07.6",
     points=2,
-    calls=("direct_light_backward",),
     needs=TASK_3,
     tolerance=GATE,
     hint="it is linear in d_radiance, and what was not seen has no derivative",
@@ -126,9 +121,7 @@ def zeros_and_doubles(t):
 
 @check(
     "07.6.mean",
-    task="07.6",
     points=3,
-    calls=("direct_light_backward",),
     needs=TASK_3,
     hint="equation (18): the mean over samples is the derivative of the integral",
     sole="the mean of the gradient is the gradient of the mean",
@@ -169,10 +162,7 @@ def the_mean_of_the_gradient(t):
 
 @check(
     "07.6.cost",
-    task="07.6",
     points=1,
-    calls=("direct_light_backward",),
-    needs=(*TASK_3, "direct_light"),
     hint="one pass over the same samples gives the derivative by everything",
     sole="differences would pay two renderings for each number",
 )

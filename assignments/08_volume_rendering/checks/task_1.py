@@ -1,13 +1,13 @@
 """Task 08.1, public checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Tolerance, check
+from photograd_course.grading import Tolerance, checks_for
 
 from .common import EXACT, random_rays, seen
+
+check = checks_for(calls=("composite",), tolerance=EXACT)
 
 ORDER = Tolerance(
     0.02, "right ones have order 2 to 8e-4, the nearest wrong one (riemann) is off by 0.5"
@@ -17,10 +17,7 @@ DIGITS = "for tiny x, 1 - exp(-x) keeps only the digits of x that 1 + x has: see
 
 @check(
     "08.1.constant",
-    task="08.1",
     points=3,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="handout, equation (4): the opacity of a step of constant extinction is exact",
     sole="the closed form of one medium, at any number of steps",
 )
@@ -46,10 +43,7 @@ def one_medium_in_closed_form(t):
 
 @check(
     "08.1.slabs",
-    task="08.1",
     points=3,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="handout, equations (5) to (7): what lies before a step dims it, itself excluded",
     sole="says who stands before whom",
 )
@@ -74,10 +68,7 @@ def two_slabs_in_closed_form(t):
 
 @check(
     "08.1.weights",
-    task="08.1",
     points=3,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="handout, equation (9): every bit of light is accounted for",
     sole="no closed form of the color is needed for this one",
 )
@@ -94,10 +85,7 @@ def nothing_is_lost(t):
 
 @check(
     "08.1.split",
-    task="08.1",
     points=2,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="a step that is cut in two has the same optical depth in all",
     sole="needs no right answer: only that the cutting does not matter",
 )
@@ -131,10 +119,7 @@ def cutting_a_step_changes_nothing(t):
 
 @check(
     "08.1.extremes",
-    task="08.1",
     points=2,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="mend the checks above first; if they pass: handout, end of section 1",
     sole="all digits, from thin air to a wall",
 )
@@ -168,9 +153,7 @@ def thin_air_and_walls(t):
 
 @check(
     "08.1.order",
-    task="08.1",
     points=2,
-    calls=("composite",),
     tolerance=ORDER,
     hint="an error that only halves, or stays, when steps are halved betrays a wrong weight",
     sole="what a wrong weight does to a medium that is not constant",

@@ -1,12 +1,12 @@
 """Task 08.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients, require_zero_for_zero
 
 from .common import EXACT, GATE, random_rays, seen
+
+check = checks_for(calls=("composite_adjoint",), needs=("composite",), tolerance=GATE)
 
 
 def slopes_of(shape, channels):
@@ -44,11 +44,7 @@ def against_differences(t, sigma, color, dt, background, groups=("sigma", "color
 
 @check(
     "08.2.differences",
-    task="08.2",
     points=6,
-    calls=("composite_adjoint",),
-    needs=("composite",),
-    tolerance=GATE,
     hint="handout, section 2: first d_color and d_background, then the two parts of d_sigma; "
     "order of results: d_sigma, d_color, d_background",
     sole="the gradient itself, without the reference",
@@ -60,11 +56,7 @@ def agrees_with_differences(t):
 
 @check(
     "08.2.background",
-    task="08.2",
     points=2,
-    calls=("composite_adjoint",),
-    needs=("composite",),
-    tolerance=GATE,
     hint="the background is the last that a step hides; T_end belongs to the pixel's total",
     sole="nearly empty rays: what is behind everything decides",
 )
@@ -106,10 +98,7 @@ def nearly_empty_rays(t):
 
 @check(
     "08.2.linear",
-    task="08.2",
     points=3,
-    calls=("composite_adjoint",),
-    needs=("composite",),
     tolerance=EXACT,
     hint="the pixel is linear in colors and background: their derivatives are its weights",
     sole="the definition of an adjoint, to the last digits",
@@ -155,10 +144,7 @@ def is_the_transpose_in_the_colors(t):
 
 @check(
     "08.2.units",
-    task="08.2",
     points=2,
-    calls=("composite_adjoint",),
-    needs=("composite",),
     tolerance=EXACT,
     hint="sigma enters as sigma * dt only: what does the chain rule add on the way back?",
     sole="asks for the step length alone, which neither sign nor direction shows",
@@ -186,11 +172,7 @@ def centimeters_instead_of_meters(t):
 
 @check(
     "08.2.walls",
-    task="08.2",
     points=2,
-    calls=("composite_adjoint",),
-    needs=("composite",),
-    tolerance=GATE,
     hint="mend 08.2.differences first; if it passes: behind a wall T is 0, which cannot be "
     "divided by, and in thin air 1 - exp(-x) loses digits",
     sole="finite numbers where a formula divides 0 by 0",

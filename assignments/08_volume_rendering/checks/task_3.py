@@ -1,11 +1,11 @@
 """Task 08.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 
 from .common import EXACT, random_box
+
+check = checks_for(calls=("ray_box",), tolerance=EXACT)
 
 # The same for what must be 0, in units of the box.
 BOXES = Tolerance(EXACT.relative, EXACT.evidence, floor=1.0)
@@ -26,10 +26,7 @@ def on_face(points, low, high):
 
 @check(
     "08.3.axes",
-    task="08.3",
     points=2,
-    calls=("ray_box",),
-    tolerance=EXACT,
     hint="handout, equations (13) and (14): smaller and larger of two crossings, on each axis",
     sole="three rays that can be checked with a ruler",
 )
@@ -47,10 +44,7 @@ def along_the_axes(t):
 
 @check(
     "08.3.faces",
-    task="08.3",
     points=2,
-    calls=("ray_box",),
-    tolerance=EXACT,
     hint="enter at the last of three entries, leave at the first of three exits",
     sole="any direction, without knowing the answer",
 )
@@ -80,10 +74,7 @@ def ends_lie_on_the_surface(t):
 
 @check(
     "08.3.inside",
-    task="08.3",
     points=2,
-    calls=("ray_box",),
-    tolerance=EXACT,
     hint="a ray begins at t = 0: what lies before that is behind the camera",
     sole="asks about what lies behind the eye",
 )
@@ -112,10 +103,7 @@ def starts_inside_or_behind(t):
 
 @check(
     "08.3.parallel",
-    task="08.3",
     points=2,
-    calls=("ray_box",),
-    tolerance=EXACT,
     hint="a component of 0 never crosses its two planes: either it is between them (faces "
     "belong to the box) or it misses",
     sole="the case in which 0 is divided by 0",

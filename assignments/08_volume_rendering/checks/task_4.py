@@ -1,19 +1,16 @@
 """Task 08.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT, between_centers, centers
+
+check = checks_for(calls=("trilinear",), tolerance=EXACT)
 
 
 @check(
     "08.4.centers",
-    task="08.4",
     points=2,
-    calls=("trilinear",),
-    tolerance=EXACT,
     hint="handout, equation (16): which u belongs to the first voxel?",
     sole="says that coordinates and axes are right, whatever the weights",
 )
@@ -26,10 +23,7 @@ def a_center_gives_its_voxel(t):
 
 @check(
     "08.4.products",
-    task="08.4",
     points=2,
-    calls=("trilinear",),
-    tolerance=EXACT,
     hint="handout, equation (18): eight corners, each with a product of three weights",
     sole="what separates eight weights from fewer",
 )
@@ -50,10 +44,7 @@ def products_stay_products(t):
 
 @check(
     "08.4.edge",
-    task="08.4",
     points=2,
-    calls=("trilinear",),
-    tolerance=EXACT,
     hint="handout, equation (17): clamp the coordinate, then split it",
     sole="says that only the border is wrong",
 )

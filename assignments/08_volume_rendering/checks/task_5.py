@@ -1,12 +1,12 @@
 """Task 08.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_zero_for_zero
 
 from .common import EXACT, between_centers, centers
+
+check = checks_for(calls=("trilinear_adjoint",), tolerance=EXACT)
 
 
 def sampling_matrix(t, shape, u):
@@ -18,10 +18,7 @@ def sampling_matrix(t, shape, u):
 
 @check(
     "08.5.single",
-    task="08.5",
     points=2,
-    calls=("trilinear_adjoint",),
-    tolerance=EXACT,
     hint="g times the weight that the voxel had in the sample",
     sole="asks about one sample, without the forward function",
 )
@@ -41,11 +38,8 @@ def one_sample_is_spread_around_its_place(t):
 
 @check(
     "08.5.transpose",
-    task="08.5",
     points=3,
-    calls=("trilinear_adjoint",),
     needs=("trilinear",),
-    tolerance=EXACT,
     hint="the same weights as forwards, from sample to voxel; do repeated places add up?",
     sole="the definition of an adjoint",
 )
@@ -71,10 +65,7 @@ def is_the_transpose(t):
 
 @check(
     "08.5.repeated",
-    task="08.5",
     points=2,
-    calls=("trilinear_adjoint",),
-    tolerance=EXACT,
     hint="d_grid[i, j, k] += values adds once where an index occurs twice",
     sole="names the mistake of a scatter that forgets",
 )

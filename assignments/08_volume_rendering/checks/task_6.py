@@ -1,14 +1,14 @@
 """Task 08.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients
 
 from .common import EXACT, GATE, random_box
 
 EARLIER = ("composite", "composite_adjoint", "ray_box", "trilinear", "trilinear_adjoint")
+
+check = checks_for(calls=("render_adjoint",), needs=EARLIER)
 
 
 def random_view(t, rays=5, shape=(3, 2, 4)):
@@ -30,10 +30,7 @@ def slopes_of_view(shape):
 
 @check(
     "08.6.differences",
-    task="08.6",
     points=4,
-    calls=("render_adjoint",),
-    needs=EARLIER,
     tolerance=GATE,
     hint="walk render_rays backwards, line by line: what does each line's adjoint need?",
     sole="the gradient of the picture, without the reference",
@@ -58,10 +55,7 @@ def the_picture_agrees_with_differences(t):
 
 @check(
     "08.6.rays",
-    task="08.6",
     points=3,
-    calls=("render_adjoint",),
-    needs=EARLIER,
     tolerance=EXACT,
     hint="a ray that misses sees the background alone; derivatives of all rays add up",
     sole="which voxels and which rays: no derivative is needed for that",

@@ -1,21 +1,18 @@
 """Task 09.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Number, Tolerance, check
+from photograd_course.grading import Number, Tolerance, checks_for
 
 from .common import EXACT
+
+check = checks_for(calls=("psnr",), tolerance=EXACT)
 
 DECIBELS = Tolerance(EXACT.relative, EXACT.evidence, floor=100.0)
 
 
 @check(
     "09.1.values",
-    task="09.1",
     points=3,
-    calls=("psnr",),
-    tolerance=EXACT,
     hint="handout, equation (3): decibels are ten times the decimal logarithm",
     sole="small enough to work out by hand",
 )
@@ -36,10 +33,7 @@ def known_decibels(t):
 
 @check(
     "09.1.mean",
-    task="09.1",
     points=2,
-    calls=("psnr",),
-    tolerance=EXACT,
     hint="handout, section 1: first one mean over everything, then one logarithm",
     sole="says that the mean comes first",
 )

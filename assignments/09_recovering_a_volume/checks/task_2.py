@@ -1,11 +1,11 @@
 """Task 09.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import EXACT, batch, random_views
+
+check = checks_for(calls=("ray_batch",), tolerance=EXACT)
 
 
 def unit(v):
@@ -15,10 +15,7 @@ def unit(v):
 
 @check(
     "09.2.middle",
-    task="09.2",
     points=3,
-    calls=("ray_batch",),
-    tolerance=EXACT,
     hint="handout, section 2: the pose's columns are right, down, forward, and the place",
     sole="names the part of the pose that is misread",
 )
@@ -35,10 +32,7 @@ def the_middle_pixel_looks_forward(t):
 
 @check(
     "09.2.projected",
-    task="09.2",
     points=4,
-    calls=("ray_batch",),
-    tolerance=EXACT,
     hint="handout, equations (4) to (6): what projects to the middle of that pixel?",
     sole="needs no formula for a ray: only that it is seen where it should be",
 )
@@ -68,10 +62,7 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
 
 @check(
     "09.2.truth",
-    task="09.2",
     points=2,
-    calls=("ray_batch",),
-    tolerance=EXACT,
     hint="pixels are counted as they lie in memory: picture by picture, row by row",
     sole="asks about the colors alone",
 )

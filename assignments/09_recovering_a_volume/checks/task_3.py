@@ -1,12 +1,12 @@
 """Task 09.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Number, check
+from photograd_course.grading import Number, checks_for
 from photograd_course.grading.adjoint_gate import central_differences, require_zero_for_zero
 
 from .common import EXACT, GATE, loss_and_slope, random_views
+
+check = checks_for(calls=("mse_and_cotangent",), tolerance=GATE)
 
 # What a renderer of 08 needs for the gradient of a few rays: 0.05 s in whole arrays.
 PATIENCE = 5.0
@@ -14,9 +14,7 @@ PATIENCE = 5.0
 
 @check(
     "09.3.values",
-    task="09.3",
     points=3,
-    calls=("mse_and_cotangent",),
     tolerance=EXACT,
     hint="handout, equation (7): over which axis is the mean, over which the sum?",
     sole="small enough to work out by hand",
@@ -64,10 +62,7 @@ def slope_of_loss(t, pixels, truth):
 
 @check(
     "09.3.differences",
-    task="09.3",
     points=3,
-    calls=("mse_and_cotangent",),
-    tolerance=GATE,
     hint="differentiate equation (7) by one number of one ray",
     sole="the derivative itself, without the reference",
 )
@@ -86,11 +81,9 @@ RENDERER = (
 
 @check(
     "09.3.chain",
-    task="09.3",
     points=4,
     calls=("mse_and_cotangent", "render_rays", "render_adjoint"),
     needs=("ray_batch",),
-    tolerance=GATE,
     seconds=PATIENCE,
     hint="mend what fails above first",
     sole="no fit before the gradient is proved: with your renderer of 08",

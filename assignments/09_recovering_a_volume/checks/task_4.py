@@ -1,12 +1,12 @@
 """Task 09.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Tolerance, check
+from photograd_course.grading import Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients
 
 from .common import EXACT, GATE, rough
+
+check = checks_for(calls=("tv_loss_adjoint",), tolerance=EXACT)
 
 ROUGHNESS = (
     "handout, equations (8) and (9): three differences under one root; none at the far "
@@ -14,15 +14,7 @@ ROUGHNESS = (
 )
 
 
-@check(
-    "09.4.values",
-    task="09.4",
-    points=4,
-    calls=("tv_loss_adjoint",),
-    tolerance=EXACT,
-    hint=ROUGHNESS,
-    sole="small enough to work out by hand",
-)
+@check("09.4.values", points=4, hint=ROUGHNESS, sole="small enough to work out by hand")
 def the_roughness_of_ramps(t):
     """The loss of even slopes has a closed form: inside, on a border, along an edge; flat has 0."""
     flat, slope = rough(t, np.full((3, 2, 4, 2), 0.7), 0.1)
@@ -44,9 +36,7 @@ def the_roughness_of_ramps(t):
 
 @check(
     "09.4.differences",
-    task="09.4",
     points=5,
-    calls=("tv_loss_adjoint",),
     tolerance=GATE,
     hint="handout, section 4: a value is in its own difference and in that of the voxel before",
     sole="the gradient itself, without the reference",
@@ -65,10 +55,7 @@ def the_slope_of_roughness_agrees_with_differences(t):
 
 @check(
     "09.4.balance",
-    task="09.4",
     points=2,
-    calls=("tv_loss_adjoint",),
-    tolerance=EXACT,
     hint="what a difference takes at one end it gives at the other",
     sole="tells at a glance which end of a difference is missing",
 )

@@ -1,11 +1,11 @@
 """Task 09.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Number, check
+from photograd_course.grading import Array, Number, checks_for
 
 from .common import EARLIER, batch, looking, random_views, views_of
+
+check = checks_for(calls=("gradient_sign_map",), needs=EARLIER)
 
 
 def sign_map(t, grid, views):
@@ -21,10 +21,7 @@ SHARE = "handout, equation (12): compare with the largest derivative before you 
 
 @check(
     "09.5.differences",
-    task="09.5",
     points=3,
-    calls=("gradient_sign_map",),
-    needs=EARLIER,
     hint="handout, equations (11) and (12): all pixels of all photographs",
     sole="the signs themselves, without the reference",
 )
@@ -73,15 +70,7 @@ def signs_agree_with_differences(t):
     )
 
 
-@check(
-    "09.5.silent",
-    task="09.5",
-    points=2,
-    calls=("gradient_sign_map",),
-    needs=EARLIER,
-    hint=SHARE,
-    sole="where nothing is known",
-)
+@check("09.5.silent", points=2, hint=SHARE, sole="where nothing is known")
 def no_sign_where_nothing_is_known(t):
     """Voxels that no ray passes, and voxels behind a wall, get 0."""
     camera = looking(np.array([0.0, 0.0, 9.0]))

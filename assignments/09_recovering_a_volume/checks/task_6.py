@@ -1,9 +1,7 @@
 """Task 09.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
 
 from .common import EARLIER, batch, loss_and_slope, random_views, rough
 
@@ -35,6 +33,8 @@ def ball_views(t, count=2, size=5):
 
 ALL = (*EARLIER, "tv_loss_adjoint")
 
+check = checks_for(calls=("fit_volume",), needs=ALL)
+
 
 def fitted(t, views, grid, steps, seed=5, adapter="fit"):
     """`fit_volume` of the submission."""
@@ -63,10 +63,7 @@ def small_start(t, shape=(3, 2, 4)):
 
 @check(
     "09.6.first",
-    task="09.6",
     points=4,
-    calls=("fit_volume",),
-    needs=ALL,
     tolerance=CHAINED,
     hint="handout, equations (13) to (16), in this order",
     sole="asks about the first two steps alone",
@@ -93,10 +90,7 @@ def the_first_steps(t):
 
 @check(
     "09.6.draws",
-    task="09.6",
     points=3,
-    calls=("fit_volume",),
-    needs=ALL,
     tolerance=CHAINED,
     hint="if 09.6.first fails too, look there first; one draw in each step, all of it used, and "
     "rng for nothing else",
@@ -133,10 +127,7 @@ def each_step_draws_its_own_pixels(t):
 
 @check(
     "09.6.falls",
-    task="09.6",
     points=3,
-    calls=("fit_volume",),
-    needs=ALL,
     hint="downhill is against the derivative",
     sole="from any start, on any scene: the least that a descent owes",
 )
@@ -154,10 +145,7 @@ def the_first_step_goes_down(t):
 
 @check(
     "09.6.start",
-    task="09.6",
     points=1,
-    calls=("fit_volume",),
-    needs=ALL,
     hint="an array of the start has changed, or is given back: copy it first",
 )
 def the_start_is_left_alone(t):

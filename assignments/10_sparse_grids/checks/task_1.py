@@ -1,11 +1,11 @@
 """Task 10.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from .common import Rows, blocks, equal_cubes, same_counts
+
+check = checks_for(calls=("octree_from_dense",))
 
 
 def octree(t, full):
@@ -43,9 +43,7 @@ def cells_of(t, tree, n):
 
 @check(
     "10.1.cells",
-    task="10.1",
     points=4,
-    calls=("octree_from_dense",),
     hint="child 4 a + 2 b + c lies in the upper half along x where a is 1",
     sole="which cell is full comes before how few nodes say so",
 )
@@ -60,9 +58,7 @@ def the_tree_says_what_the_cube_says(t):
 
 @check(
     "10.1.one",
-    task="10.1",
     points=3,
-    calls=("octree_from_dense",),
     hint="handout, equation (6): only the node that holds the odd cell is cut",
     sole="the exact formula for the memory",
 )
@@ -82,9 +78,7 @@ def one_cell_costs_eight_nodes_a_level(t):
 
 @check(
     "10.1.fewest",
-    task="10.1",
     points=3,
-    calls=("octree_from_dense",),
     hint="handout, equation (4): a cube of equal cells, full or empty, is one leaf",
     sole="what an octree is for: counted, not timed",
 )

@@ -1,12 +1,12 @@
 """Task 10.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 from photograd_course.grading.failures import CheckFailed
 
 from .common import blocks, equal_cubes, same_counts
+
+check = checks_for(calls=("skip_empty",))
 
 
 def counting_leaf(full, asked, most=np.inf):
@@ -68,9 +68,7 @@ def same_samples(t, got, right):
 
 @check(
     "10.2.samples",
-    task="10.2",
     points=4,
-    calls=("skip_empty",),
     hint="the first face ahead is the nearest of three; samples before it share the leaf",
     sole="the picture depends on nothing else",
 )
@@ -86,9 +84,7 @@ def samples_in_full_leaves(t):
 
 @check(
     "10.2.faces",
-    task="10.2",
     points=2,
-    calls=("skip_empty",),
     hint="a place on a common face belongs to the upper leaf: going down, the jump there is 0",
     sole="places that a random ray never meets, and a lattice always",
 )
@@ -108,9 +104,7 @@ def samples_on_faces(t):
 
 @check(
     "10.2.cost",
-    task="10.2",
     points=4,
-    calls=("skip_empty",),
     hint="one question for each leaf that a ray passes; then over all samples in it at once",
     sole="what skipping is for: questions are counted, not seconds",
 )

@@ -1,12 +1,12 @@
 """Task 10.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, agree, check
+from photograd_course.grading import Array, agree, checks_for
 from photograd_course.grading.failures import StudentFailure
 
 from .common import recognized, same_counts
+
+check = checks_for(calls=("voxel_hash_insert",))
 
 
 def some_voxels(t, count, reach=6):
@@ -86,9 +86,7 @@ def require_sound(t, table, voxels, rows):
 
 @check(
     "10.3.found",
-    task="10.3",
     points=3,
-    calls=("voxel_hash_insert",),
     hint="handout, equation (9): the first free slot from the voxel's own onwards",
     sole="asks what a table is for: voxel in, row out",
 )
@@ -114,9 +112,7 @@ def what_was_put_in_is_found(t):
 
 @check(
     "10.3.again",
-    task="10.3",
     points=3,
-    calls=("voxel_hash_insert",),
     hint="a slot that holds the very same voxel is as good as a free one",
     sole="a voxel that comes again is not a new one",
 )
@@ -136,9 +132,7 @@ def a_voxel_that_comes_again_gets_its_new_row(t):
 
 @check(
     "10.3.room",
-    task="10.3",
     points=2,
-    calls=("voxel_hash_insert",),
     hint="count the slots that were looked at: after all of them, raise ValueError",
 )
 def a_full_table_says_so(t):
@@ -152,9 +146,7 @@ def a_full_table_says_so(t):
 
 @check(
     "10.3.kept",
-    task="10.3",
     points=1,
-    calls=("voxel_hash_insert",),
     hint="copy the table first",
     sole="what students can run; hidden checks find its mistakes as well",
 )

@@ -1,14 +1,14 @@
 """Task 10.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, check
+from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_gradients, require_zero_for_zero
 
 # Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
 # all named wrong solutions.
 EXACT = Tolerance(1e-11, "right ones differ by 1e-15, wrong ones by 1e-2 or more")
+
+check = checks_for(calls=("sample_sparse_adjoint",), tolerance=EXACT)
 GATE = Tolerance(1e-6, "differences leave 1e-9, wrong ones are off by 1e-2 or more")
 
 
@@ -29,10 +29,7 @@ def back(t, count, row, weight, g):
 
 @check(
     "10.4.transpose",
-    task="10.4",
     points=3,
-    calls=("sample_sparse_adjoint",),
-    tolerance=EXACT,
     hint="handout, equation (11): the same weights as forwards, from sample to voxel",
     sole="the definition of an adjoint",
 )
@@ -67,10 +64,7 @@ def is_the_transpose(t):
 
 @check(
     "10.4.missing",
-    task="10.4",
     points=3,
-    calls=("sample_sparse_adjoint",),
-    tolerance=EXACT,
     hint="row -1 means that there is no voxel; as an index it means the last one",
     sole="what a voxel that does not exist gets, and who must not get it instead",
 )
@@ -94,9 +88,7 @@ def a_missing_voxel_gets_nothing(t):
 
 @check(
     "10.4.picture",
-    task="10.4",
     points=3,
-    calls=("sample_sparse_adjoint",),
     tolerance=GATE,
     hint="loss_and_grad is right once your function is the transpose of sample_sparse",
     sole="the derivative of a picture, by differences",

@@ -1,11 +1,11 @@
 """Task 10.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 
 from .common import EARLIER, Rows, looking, lump, same_voxels
+
+check = checks_for(calls=("prune_and_dilate",))
 
 SAME = Tolerance(1e-10, "skipped and unskipped pictures differ by 1e-15, wrong ones by 1e-3")
 
@@ -40,9 +40,7 @@ def some_shares(t, most):
 
 @check(
     "10.5.pruned",
-    task="10.5",
     points=3,
-    calls=("prune_and_dilate",),
     hint="the largest share of any sample decides: one view that needs a voxel is enough",
     sole="who stays, asked without growing",
 )
@@ -64,9 +62,7 @@ def the_largest_share_decides(t):
 
 @check(
     "10.5.grown",
-    task="10.5",
     points=3,
-    calls=("prune_and_dilate",),
     hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
     sole="closed forms: one voxel, a corner, two steps at once",
 )
@@ -108,9 +104,7 @@ def photographed(t, n, voxels, values, rays):
 
 @check(
     "10.5.render",
-    task="10.5",
     points=2,
-    calls=("prune_and_dilate",),
     needs=EARLIER[:3],
     tolerance=SAME,
     hint="a sample in an empty cell reads the full cell next to it: grown by one, not less",

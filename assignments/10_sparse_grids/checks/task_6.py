@@ -1,15 +1,15 @@
 """Task 10.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
 from photograd_course.grading.failures import CheckFailed, StudentFailure
 
 from .common import EARLIER, FAITHFUL, Rows, looking, lump, recognized, same_voxels
 
 CHAINED = Tolerance(1e-7, "right ones differ by 1e-12, wrong ones by 1e-3 or more")
 STEPS = (*EARLIER, "sample_sparse_adjoint")
+
+check = checks_for(calls=("fit_sparse",), needs=STEPS)
 
 
 def fitted(t, *given, function="fit_sparse"):
@@ -54,10 +54,7 @@ def rates():
 
 @check(
     "10.6.first",
-    task="10.6",
     points=2,
-    calls=("fit_sparse",),
-    needs=STEPS,
     tolerance=CHAINED,
     hint="handout, equation (14): one Adam for all four channels, then sigma cut off at 0",
     sole="asks about the first steps alone",
@@ -123,10 +120,7 @@ def two_rounds(t, *given):
 
 @check(
     "10.6.chain",
-    task="10.6",
     points=3,
-    calls=("fit_sparse",),
-    needs=STEPS,
     tolerance=CHAINED,
     hint="handout, equations (15) and (16): between rounds prune, grow, carry over, and start "
     "Adam anew",
@@ -158,14 +152,7 @@ def rounds_can_be_chained(t):
     t.require(len(none[2]) == 0, "without steps there are no losses")
 
 
-@check(
-    "10.6.start",
-    task="10.6",
-    points=1,
-    calls=("fit_sparse",),
-    needs=STEPS,
-    hint="an array of the start has changed: copy it first",
-)
+@check("10.6.start", points=1, hint="an array of the start has changed: copy it first")
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
     given = (*small_case(t), 2, 2, 0.01, 1)

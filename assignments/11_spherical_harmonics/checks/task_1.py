@@ -1,11 +1,11 @@
 """Task 11.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Tolerance, check
+from photograd_course.grading import Tolerance, checks_for
 
 from .common import EXACT, band, basis, sphere, turn, unit
+
+check = checks_for(calls=("sh_basis",))
 
 ORTHONORMAL = Tolerance(
     1e-10, "right ones leave 2e-15, the nearest wrong one (root_two_everywhere) more than 0.01"
@@ -14,9 +14,7 @@ ORTHONORMAL = Tolerance(
 
 @check(
     "11.1.first",
-    task="11.1",
     points=2,
-    calls=("sh_basis",),
     tolerance=EXACT,
     hint="handout, equations (5) to (8) for l = 0 and 1; the order is m = -1, 0, 1",
     sole="small enough to compare by eye",
@@ -31,9 +29,7 @@ def the_first_four(t):
 
 @check(
     "11.1.addition",
-    task="11.1",
     points=3,
-    calls=("sh_basis",),
     tolerance=EXACT,
     hint="handout, equations (7) and (8): the polynomial in z, the size of each harmonic",
     sole="names the degree in which sizes or polynomials are wrong",
@@ -60,9 +56,7 @@ def harmonics_of_a_degree_add_up(t):
 
 @check(
     "11.1.gram",
-    task="11.1",
     points=3,
-    calls=("sh_basis",),
     tolerance=ORTHONORMAL,
     hint="the integral of two harmonics' product is 1 for a pair of equals, else 0",
     sole="what all the rest is built on",
@@ -76,9 +70,7 @@ def harmonics_are_orthonormal(t):
 
 @check(
     "11.1.signs",
-    task="11.1",
     points=4,
-    calls=("sh_basis",),
     hint="column l (l + 1) + m; m > 0 has the real part, m < 0 the other",
     sole="says which column or sign is wrong, where sums of squares see nothing",
 )

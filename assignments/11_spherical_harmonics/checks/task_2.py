@@ -1,20 +1,16 @@
 """Task 11.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Tolerance, checks_for
 
 from .common import EXACT, basis, sphere, unit
+
+check = checks_for(calls=("sh_project",), needs=("sh_basis",), tolerance=EXACT)
 
 
 @check(
     "11.2.back",
-    task="11.2",
     points=3,
-    calls=("sh_project",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, equation (9): each value counts as much as its solid angle",
     sole="what a projection is for",
 )
@@ -31,11 +27,7 @@ def coefficients_come_back(t):
 
 @check(
     "11.2.rest",
-    task="11.2",
     points=2,
-    calls=("sh_project",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, section 2: what a projection leaves is orthogonal to each harmonic",
     sole="a function that no sum of harmonics reaches",
 )

@@ -1,9 +1,7 @@
 """Task 11.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, unit
+
+check = checks_for(calls=("sh_color_adjoint",), needs=("sh_basis",), tolerance=EXACT)
 
 SMOOTH = Tolerance(
     1e-6, "central differences leave 4e-10, the nearest wrong one (start_of_ones) 0.026"
@@ -32,11 +32,7 @@ def adjoint(t, c, v, g):
 
 @check(
     "11.3.coefficients",
-    task="11.3",
     points=4,
-    calls=("sh_color_adjoint",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, equation (11): colors are linear in the coefficients",
     sole="asks about the coefficients alone",
 )
@@ -59,10 +55,7 @@ def the_adjoint_by_coefficients(t):
 
 @check(
     "11.3.vectors",
-    task="11.3",
     points=5,
-    calls=("sh_color_adjoint",),
-    needs=("sh_basis",),
     tolerance=SMOOTH,
     hint="handout, equations (12) to (14)",
     sole="the derivative itself, without the reference",
@@ -81,11 +74,7 @@ def the_adjoint_by_vectors(t):
 
 @check(
     "11.3.length",
-    task="11.3",
     points=2,
-    calls=("sh_color_adjoint",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, equation (14): a longer v alone changes no color",
     sole="names what the step from v to d leaves out",
 )

@@ -1,11 +1,11 @@
 """Task 11.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT, band, basis, turn, unit
+
+check = checks_for(calls=("sh_rotate",), needs=("sh_basis", "sh_project"), tolerance=EXACT)
 
 
 def rotated(t, c, R):
@@ -15,11 +15,7 @@ def rotated(t, c, R):
 
 @check(
     "11.4.turns",
-    task="11.4",
     points=4,
-    calls=("sh_rotate",),
-    needs=("sh_basis", "sh_project"),
-    tolerance=EXACT,
     hint="handout, equation (15): what stands at d after the turn stood elsewhere before",
     sole="the definition of a rotation",
 )
@@ -38,11 +34,7 @@ def a_turned_function_has_moved(t):
 
 @check(
     "11.4.compose",
-    task="11.4",
     points=2,
-    calls=("sh_rotate",),
-    needs=("sh_basis", "sh_project"),
-    tolerance=EXACT,
     hint="R' after R is the turn R' R; each degree keeps its length",
     sole="needs no harmonics to be asked",
 )

@@ -1,11 +1,11 @@
 """Task 11.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, check
+from photograd_course.grading import Array, checks_for
 
 from .common import EXACT, basis, sphere, turn, unit
+
+check = checks_for(calls=("probe_irradiance",), needs=("sh_basis",), tolerance=EXACT)
 
 
 def lit(t, probes, p, n):
@@ -15,11 +15,7 @@ def lit(t, probes, p, n):
 
 @check(
     "11.5.constant",
-    task="11.5",
     points=2,
-    calls=("probe_irradiance",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="a white sky of radiance 1 gives the irradiance pi: the factor of degree 0",
     sole="sees nothing but degree 0 and the sum of the weights",
 )
@@ -33,11 +29,7 @@ def a_constant_sky(t):
 
 @check(
     "11.5.lambert",
-    task="11.5",
     points=3,
-    calls=("probe_irradiance",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, equations (17) and (18): one factor for each degree",
     sole="the integral that the factors stand for",
 )
@@ -55,11 +47,7 @@ def irradiance_is_the_integral(t):
 
 @check(
     "11.5.blend",
-    task="11.5",
     points=3,
-    calls=("probe_irradiance",),
-    needs=("sh_basis",),
-    tolerance=EXACT,
     hint="handout, equation (19): eight probes, the weights of `corners`",
     sole="looks at the blend, whatever the factors",
 )

@@ -1,9 +1,7 @@
 """Task 11.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
 
 from .common import EXACT, turn, unit
 
@@ -49,13 +47,12 @@ def small_case(rng, shape=(2, 3, 2), channels=1):
 
 EARLIER = ("sh_basis", "sh_color_adjoint")
 
+check = checks_for(calls=("fit_plenoxels",), needs=EARLIER)
+
 
 @check(
     "11.6.refine",
-    task="11.6",
     points=3,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
     tolerance=EXACT,
     hint="handout, equation (21): where do the eight new cells lie in the old ones? An array "
     "twice too large: refinement stands between levels, not after the last",
@@ -79,10 +76,7 @@ def refinement_keeps_what_is_even(t):
 
 @check(
     "11.6.first",
-    task="11.6",
     points=2,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
     tolerance=CHAINED,
     hint="handout, equations (22) and (23), both in each step",
     sole="asks about the first two steps alone",
@@ -118,10 +112,7 @@ def the_first_steps(t):
 
 @check(
     "11.6.chain",
-    task="11.6",
     points=2,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
     tolerance=CHAINED,
     hint="refine before every level but the first; then march, two new Adams, `steps` steps",
     sole="counts levels, steps and losses",
@@ -140,10 +131,7 @@ def levels_can_be_chained(t):
 
 @check(
     "11.6.start",
-    task="11.6",
     points=1,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
     hint="an array of the start has changed: copy it first",
     sole="what students can run; hidden checks find its mistakes as well",
 )

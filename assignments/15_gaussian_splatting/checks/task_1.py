@@ -1,9 +1,7 @@
 """Task 15.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, GATE, spread
+
+check = checks_for(calls=("covariance",), tolerance=EXACT)
 
 
 def floored(size, tolerance=EXACT):
@@ -26,10 +26,7 @@ def spread_back(t, q, s, g):
 
 @check(
     "15.1.axes",
-    task="15.1",
     points=2,
-    calls=("covariance",),
-    tolerance=EXACT,
     hint="handout, equations (4) to (6): w turns nothing, (x, y, z) is the axis",
     sole="small enough to work out by hand",
 )
@@ -58,10 +55,7 @@ def known_turns(t):
 
 @check(
     "15.1.same",
-    task="15.1",
     points=2,
-    calls=("covariance",),
-    tolerance=EXACT,
     hint="handout, section 1: divide by the length of q; M M^T is symmetric whatever M is",
     sole="needs no formula: what any covariance must be",
 )
@@ -77,9 +71,7 @@ def symmetric_positive_and_free_of_length(t):
 
 @check(
     "15.1.differences",
-    task="15.1",
     points=4,
-    calls=("covariance",),
     adjoints=("covariance",),
     tolerance=GATE,
     hint="handout, equations (7) and (8); d_log_scales: M, not R; d_cov need not be symmetric",
@@ -102,11 +94,8 @@ def the_shape_agrees_with_differences(t):
 
 @check(
     "15.1.length",
-    task="15.1",
     points=1,
-    calls=("covariance",),
     adjoints=("covariance",),
-    tolerance=EXACT,
     hint="handout, equation (8): a longer q alone changes nothing",
     sole="names what the division by the length leaves out",
 )

@@ -1,9 +1,7 @@
 """Task 15.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, GATE, ahead, in_world, some_camera
+
+check = checks_for(calls=("project",), tolerance=EXACT)
 
 SAMPLED = Tolerance(
     1e-4, "a Gaussian of 1 mm leaves 5e-6, the nearest wrong one (lens_no_third_column) 0.28"
@@ -61,10 +61,7 @@ def outside(rng, camera, k):
 
 @check(
     "15.2.means",
-    task="15.2",
     points=3,
-    calls=("project",),
-    tolerance=EXACT,
     hint="handout, equations (9) and (10): rotate, move, divide by t_z, stretch, move",
     sole="needs no covariance",
 )
@@ -81,9 +78,7 @@ def where_means_are_seen(t):
 
 @check(
     "15.2.sampled",
-    task="15.2",
     points=3,
-    calls=("project",),
     tolerance=SAMPLED,
     hint="handout, equations (11) and (12): J is the derivative of (10) by t",
     sole="needs no formula: only your own means",
@@ -105,10 +100,7 @@ def the_covariance_of_projected_points(t):
 
 @check(
     "15.2.limits",
-    task="15.2",
     points=2,
-    calls=("project",),
-    tolerance=EXACT,
     hint="handout, equation (13): only J sees the held direction, and mean2d does not",
     sole="asks what is held and what is not, on each side",
 )
@@ -148,9 +140,7 @@ def projection_gate(t, points, camera, g):
 
 @check(
     "15.2.differences",
-    task="15.2",
     points=4,
-    calls=("project",),
     adjoints=("project",),
     tolerance=GATE,
     hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
@@ -171,9 +161,7 @@ def the_projection_agrees_with_differences(t):
 
 @check(
     "15.2.held",
-    task="15.2",
     points=3,
-    calls=("project",),
     adjoints=("project",),
     tolerance=GATE,
     hint="handout, section 2: what is held does not move; t_z still stands under f",

@@ -1,9 +1,7 @@
 """Task 15.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, GATE
+
+check = checks_for(calls=("screen_alpha",), tolerance=EXACT)
 
 
 def taken(t, m, s, o, pixels):
@@ -40,10 +40,7 @@ def wide_splats(rng, n, p):
 
 @check(
     "15.3.round",
-    task="15.3",
     points=2,
-    calls=("screen_alpha",),
-    tolerance=EXACT,
     hint="handout, equations (15) to (18), for a round splat",
     sole="small enough to work out by hand",
 )
@@ -61,10 +58,7 @@ def a_round_splat(t):
 
 @check(
     "15.3.ellipse",
-    task="15.3",
     points=2,
-    calls=("screen_alpha",),
-    tolerance=EXACT,
     hint="handout, equations (16) and (17): the inverse swaps xx and yy; B dx dy stands outside "
     "of the 1/2; or dx and dy have different signs",
     sole="says whether the conic belongs to the covariance",
@@ -81,11 +75,8 @@ def on_an_ellipse_alpha_is_the_same(t):
 
 @check(
     "15.3.cuts",
-    task="15.3",
     points=2,
-    calls=("screen_alpha",),
     adjoints=("screen_alpha",),
-    tolerance=EXACT,
     hint="handout, equation (18): below ALPHA_MIN nothing, never above ALPHA_MAX; both are flat",
     sole="names the cut-off, and whether its derivative is 0",
 )
@@ -113,9 +104,7 @@ def cut_offs(t):
 
 @check(
     "15.3.differences",
-    task="15.3",
     points=4,
-    calls=("screen_alpha",),
     adjoints=("screen_alpha",),
     tolerance=GATE,
     hint="handout, equations (19) and (20): derivatives by A, B, C or by the covariance, each "
@@ -141,11 +130,8 @@ def alpha_agrees_with_differences(t):
 
 @check(
     "15.3.pull",
-    task="15.3",
     points=2,
-    calls=("screen_alpha",),
     adjoints=("screen_alpha",),
-    tolerance=EXACT,
     hint="handout, equation (21): absolute values first, then the sum over pixels",
     sole="asks about pull alone",
 )

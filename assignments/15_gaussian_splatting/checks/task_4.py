@@ -1,9 +1,7 @@
 """Task 15.4, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, check
+from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EXACT, GATE
+
+check = checks_for(calls=("composite",), tolerance=EXACT)
 
 
 def blended(t, a, c, z, b):
@@ -35,10 +35,7 @@ def layers(rng, n, p):
 
 @check(
     "15.4.layers",
-    task="15.4",
     points=2,
-    calls=("composite",),
-    tolerance=EXACT,
     hint="handout, equation (22): T is what all splats in front let through, not this one",
     sole="small enough to work out by hand",
 )
@@ -65,11 +62,8 @@ def known_layers(t):
 
 @check(
     "15.4.order",
-    task="15.4",
     points=3,
-    calls=("composite",),
     adjoints=("composite",),
-    tolerance=EXACT,
     hint="sort by depth inside; back must undo the sorting",
     sole="needs no formula: the list's order means nothing",
 )
@@ -87,9 +81,7 @@ def the_order_of_the_list_does_not_matter(t):
 
 @check(
     "15.4.differences",
-    task="15.4",
     points=4,
-    calls=("composite",),
     adjoints=("composite",),
     tolerance=GATE,
     hint="handout, equations (23) to (25): what is behind a splat is seen less when it grows",

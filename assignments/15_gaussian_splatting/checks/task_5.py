@@ -1,9 +1,7 @@
 """Task 15.5, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Record, check
+from photograd_course.grading import Array, Record, checks_for
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -11,6 +9,8 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 from .common import EARLIER, EXACT, GATE, SCENE, in_world, some_camera, some_scene
+
+check = checks_for(calls=("render",), needs=EARLIER, tolerance=EXACT)
 
 
 def shown(t, scene, camera, pixels, b):
@@ -35,11 +35,7 @@ def middle_pixels(rng, camera, p):
 
 @check(
     "15.5.one",
-    task="15.5",
     points=2,
-    calls=("render",),
-    needs=EARLIER,
-    tolerance=EXACT,
     hint="handout, equation (26): the four stages in their order; the camera's depth sorts",
     sole="small enough to work out by hand",
 )
@@ -63,10 +59,7 @@ def one_splat_straight_ahead(t):
 
 @check(
     "15.5.differences",
-    task="15.5",
     points=4,
-    calls=("render",),
-    needs=EARLIER,
     tolerance=GATE,
     hint="handout, equation (27): the stages backwards, each with what the one after it returns",
     sole="the whole chain, group by group, without the reference",
@@ -94,11 +87,7 @@ def the_chain_agrees_with_differences(t):
 
 @check(
     "15.5.behind",
-    task="15.5",
     points=1,
-    calls=("render",),
-    needs=EARLIER,
-    tolerance=EXACT,
     hint="leave out what is not farther than NEAR in front, and give its rows zeros",
     sole="asks about culling alone",
 )

@@ -1,11 +1,11 @@
 """Task 15.6, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, agree, check
+from photograd_course.grading import Array, Items, agree, checks_for
 
 from .common import EXACT, SCENE, spread
+
+check = checks_for(calls=("densify",), needs=("covariance",), tolerance=EXACT)
 
 
 def denser(t, scene, pressure, seed, most, count, adapter="densify"):
@@ -39,11 +39,7 @@ def eight(rng):
 
 @check(
     "15.6.rows",
-    task="15.6",
     points=2,
-    calls=("densify",),
-    needs=("covariance",),
-    tolerance=EXACT,
     hint="handout, equations (28) to (30): first those that stay, then clones, then parts "
     "twice; work on copies",
     sole="asks which rows there are, and nothing of their values",
@@ -62,11 +58,7 @@ def who_stays_and_who_is_new(t):
 
 @check(
     "15.6.values",
-    task="15.6",
     points=2,
-    calls=("densify",),
-    needs=("covariance",),
-    tolerance=EXACT,
     hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); places: L z with L "
     "of the whole",
     sole="asks about the values of new rows",
@@ -104,11 +96,7 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
 
 @check(
     "15.6.most",
-    task="15.6",
     points=1,
-    calls=("densify",),
-    needs=("covariance",),
-    tolerance=EXACT,
     hint="each chosen one makes one more; the highest pressure goes first. Faint ones leave "
     "first: room is `most` minus the number that stay",
     sole="asks about the budget alone",

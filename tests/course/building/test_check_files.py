@@ -65,7 +65,7 @@ def test_checks_are_in_the_order_of_tasks_public_ones_first() -> None:
     [
         ("task_1.py", "points=40,\n", 'points=40,\n    visibility="hidden",\n', "checks/hidden/t"),
         ("task_1.py", "points=40,\n", 'points=40,\n    visibility="secret",\n', "checks/hidden/t"),
-        ("task_1.py", 'task="17.1"', 'task="17.9"', "17.9"),
+        ("task_1.py", '"17.1.known"', '"17.9.known"', "17.9"),
         ("hidden/task_1.py", '"17.1.random"', '"17.1.known"', "it occurs twice"),
     ],
 )
@@ -80,7 +80,7 @@ def test_a_check_out_of_place_is_refused(
 def test_a_public_check_in_the_hidden_folder_is_refused(broken: Broken) -> None:
     text = (broken.folder / "checks" / "task_1.py").read_text("utf-8")
     broken.add("checks/hidden/task_1.py", text.replace("17.1.known", "17.1.more"))
-    with pytest.raises(SceneError, match="a public check of task 17.1 in checks/task_1"):
+    with pytest.raises(SceneError, match=r"a public check of task 17\.1 in checks/task_1"):
         load_checks(read_manifest(broken.folder))
 
 

@@ -60,7 +60,7 @@ import numpy as np
 from photograd_course.grading import Number, Tolerance, check
 
 
-@check("90.1.value", task="90.1", points=3, calls=("weighted_sum",), seconds=2.0,
+@check("90.1.value", points=3, calls=("weighted_sum",), seconds=2.0,
        tolerance=Tolerance(1e-12, "rounding"))
 def value(t):
     """The sum is right."""

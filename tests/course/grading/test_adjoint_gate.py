@@ -28,7 +28,7 @@ def slow(x):
 
 @pytest.fixture
 def trial() -> Trial:
-    made = check("1.x", task="1", points=1, calls=(), tolerance=Tolerance(1e-9, "tests"))(_body)
+    made = check("1.x", points=1, calls=(), tolerance=Tolerance(1e-9, "tests"))(_body)
     return Trial(made, LocalStudent({"m": CODE}), seed=(1,), module="m")
 
 

@@ -69,7 +69,7 @@ def open_trial(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Open]
     def body(t: Trial) -> None:
         """Something holds."""
 
-    made = check("1.x", task="1", points=1, calls=("blend",), tolerance=Tolerance(1e-12, "sums"))
+    made = check("1.x", points=1, calls=("blend",), tolerance=Tolerance(1e-12, "sums"))
 
     def open_one(text: str) -> Trial:
         student: Student = LocalStudent({"m": text})
@@ -144,7 +144,6 @@ def test_a_check_runs_its_battery_after_its_body() -> None:
     reference = SimpleNamespace(blend=lambda a, w: a * w[:, None])
     made = check(
         "1.x",
-        task="1",
         points=1,
         calls=("blend",),
         visibility="hidden",
@@ -159,4 +158,4 @@ def test_a_check_runs_its_battery_after_its_body() -> None:
         )
         assert found.status is status, found.text
     with pytest.raises(RangeError, match="a hidden check"):
-        check("1.x", task="1", points=1, calls=(), battery=[BLEND])
+        check("1.x", points=1, calls=(), battery=[BLEND])

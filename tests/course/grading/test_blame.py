@@ -37,7 +37,7 @@ def outcome(bundle: Bundle) -> Callable[..., Outcome]:
             opened.append(None)
             return LocalStudent({"toy": control or ""})
 
-        made: Check = check("90.1.x", task="90.1", points=1, calls=("weighted_sum",))(body)
+        made: Check = check("90.1.x", points=1, calls=("weighted_sum",))(body)
         (found,) = run_checks(
             [made],
             bundle.setting,

@@ -1,7 +1,5 @@
 """Task 01.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -16,7 +14,6 @@ def cubics(t, n):
 
 @check(
     "01.1.cubic",
-    task="01.1",
     points=4,
     calls=("numeric_derivative",),
     visibility="hidden",

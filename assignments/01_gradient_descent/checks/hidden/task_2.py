@@ -1,22 +1,19 @@
 """Task 01.2, hidden checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, checks_for
 
 from ..common import walk
 from .common import FAR
 
+check = checks_for(calls=("gd_1d",), visibility="hidden")
+
 
 @check(
     "01.2.basins",
-    task="01.2",
     points=3,
-    calls=("gd_1d",),
-    visibility="hidden",
     tolerance=Tolerance(1e-9, "right answers differ by 1.1e-15 at most, wrong ones by 1"),
     hint="Short steps stay in the valley where they began; a long one may jump out of it.",
     battery=[
@@ -49,10 +46,7 @@ def the_walk_ends_in_the_predicted_valley(t):
 
 @check(
     "01.2.undefined",
-    task="01.2",
     points=3,
-    calls=("gd_1d",),
-    visibility="hidden",
     hint="NaN > 1 is False: write the verdict so that NaN counts as gone wrong, Eq. (8).",
 )
 def nothing_is_not_better(t):

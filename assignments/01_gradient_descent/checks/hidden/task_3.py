@@ -1,7 +1,5 @@
 """Task 01.3, hidden checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -22,7 +20,6 @@ def left_domain(t, n):
 
 @check(
     "01.3.contraction",
-    task="01.3",
     points=4,
     calls=("gd_nd",),
     visibility="hidden",

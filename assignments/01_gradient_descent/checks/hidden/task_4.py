@@ -1,7 +1,5 @@
 """Task 01.4, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, Tolerance, check
 
@@ -10,7 +8,6 @@ from .common import FAR, bowls
 
 @check(
     "01.4.roots",
-    task="01.4",
     points=5,
     calls=("momentum",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 01.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -12,7 +10,6 @@ from .common import FAR, bowls
 
 @check(
     "01.5.sums",
-    task="01.5",
     points=6,
     calls=("adam",),
     visibility="hidden",

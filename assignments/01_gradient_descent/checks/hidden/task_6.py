@@ -1,14 +1,14 @@
 """Task 01.6, hidden checks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, checks_for
 
 from ..common import EXACT, on_points
 from ..task_6 import Patient
+
+check = checks_for(calls=("backtracking",), visibility="hidden")
 
 
 def refused(t, n):
@@ -18,12 +18,7 @@ def refused(t, n):
 
 
 @check(
-    "01.6.undefined",
-    task="01.6",
-    points=2,
-    calls=("backtracking",),
-    visibility="hidden",
-    hint="Write the loop so that NaN is refused: `not value <= bound`.",
+    "01.6.undefined", points=2, hint="Write the loop so that NaN is refused: `not value <= bound`."
 )
 def a_step_out_of_the_domain_is_refused(t):
     """Where the function is NaN the step is too long."""
@@ -97,10 +92,7 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
 
 @check(
     "01.6.descends",
-    task="01.6",
     points=4,
-    calls=("backtracking",),
-    visibility="hidden",
     seconds=15.0,
     hint="Begin with the step length tau0 that you are given, also above 1.",
     battery=[

@@ -1,7 +1,5 @@
 """Task 02.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Subject, check
 
@@ -15,7 +13,6 @@ def multiplied(t, n):
 
 @check(
     "02.1.many",
-    task="02.1",
     points=3,
     calls=("Value.__add__", "Value.__mul__"),
     visibility="hidden",

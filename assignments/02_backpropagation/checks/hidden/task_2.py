@@ -1,7 +1,5 @@
 """Task 02.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import check
 
@@ -10,7 +8,6 @@ from ..common import EXACT, gates_spec
 
 @check(
     "02.2.many",
-    task="02.2",
     points=2,
     calls=("Value.maximum",),
     visibility="hidden",

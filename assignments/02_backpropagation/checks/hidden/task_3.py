@@ -1,7 +1,5 @@
 """Task 02.3, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import check
 
@@ -10,7 +8,6 @@ from ..common import EXACT, gates_spec
 
 @check(
     "02.3.many",
-    task="02.3",
     points=3,
     calls=("Value.exp", "Value.log", "Value.__pow__"),
     visibility="hidden",

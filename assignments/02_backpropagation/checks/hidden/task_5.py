@@ -1,11 +1,11 @@
 """Task 02.5, hidden checks."""
 
-from __future__ import annotations
-
-from photograd_course.grading import Array, Items, Record, Tolerance, check
+from photograd_course.grading import Array, Items, Record, Tolerance, checks_for
 
 from ..common import DIFFERENCES, EXACT, ordered
 from ..task_5 import evaluate, trusted_program
+
+check = checks_for(calls=("backward",), visibility="hidden")
 
 ANALYTIC = Tolerance(
     1e-9, "complex steps have no truncation: 2.5e-15 was the worst of 300 graphs, five engines each"
@@ -13,12 +13,7 @@ ANALYTIC = Tolerance(
 
 
 @check(
-    "02.5.random",
-    task="02.5",
-    points=4,
-    calls=("backward",),
-    visibility="hidden",
-    sole="fifty expressions, against differences and complex steps of ours",
+    "02.5.random", points=4, sole="fifty expressions, against differences and complex steps of ours"
 )
 def fifty_random_expressions(t):
     """Values and gradients of fifty random expressions are right."""
@@ -35,15 +30,7 @@ def fifty_random_expressions(t):
         t.close("gradients", got, exact, ANALYTIC)
 
 
-@check(
-    "02.5.chain",
-    task="02.5",
-    points=2,
-    calls=("backward",),
-    visibility="hidden",
-    tolerance=EXACT,
-    seconds=20.0,
-)
+@check("02.5.chain", points=2, tolerance=EXACT, seconds=20.0)
 def a_long_chain_backward(t):
     """backward passes a chain of 50,000 values."""
     slope = float(1.0 + t.rng.uniform(1e-6, 1e-5))

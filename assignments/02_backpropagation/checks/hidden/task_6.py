@@ -1,7 +1,5 @@
 """Task 02.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Subject, Tolerance, check
 
@@ -21,7 +19,6 @@ SMALL = 1e-6  # the error of a gradient that is accepted
 
 @check(
     "02.6.scale",
-    task="02.6",
     points=1,
     calls=("grad_check",),
     visibility="hidden",

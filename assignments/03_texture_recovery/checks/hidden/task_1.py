@@ -1,7 +1,5 @@
 """Task 03.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import EXACT
@@ -10,7 +8,6 @@ from .common import sampled
 
 @check(
     "03.1.hidden",
-    task="03.1",
     points=3,
     calls=("bilinear_sample",),
     visibility="hidden",

@@ -1,21 +1,17 @@
 """Task 03.2, hidden checks."""
 
-from __future__ import annotations
-
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, checks_for
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT
 from .common import measured
 
+check = checks_for(calls=("bilinear_sample_adjoint",), tolerance=EXACT, visibility="hidden")
+
 
 @check(
     "03.2.hidden",
-    task="03.2",
     points=4,
-    calls=("bilinear_sample_adjoint",),
-    visibility="hidden",
-    tolerance=EXACT,
     sole="the same mistakes at places that are not known beforehand",
     battery=[
         Subject(
@@ -33,15 +29,7 @@ def the_adjoint_at_random_places(t):
         t.close("d_T", got, t.reference.bilinear_sample_adjoint(shape, uv, g))
 
 
-@check(
-    "03.2.cost",
-    task="03.2",
-    points=2,
-    calls=("bilinear_sample_adjoint",),
-    needs=("bilinear_sample",),
-    visibility="hidden",
-    tolerance=EXACT,
-)
+@check("03.2.cost", points=2, needs=("bilinear_sample",))
 def the_adjoint_is_cheap(t):
     """With 2,208 texels the adjoint is right, and costs a few forward calls."""
     uv, g = t.rng.uniform(0.0, 1.0, (3000, 2)), t.rng.uniform(-1.0, 1.0, (3000, 1))

@@ -1,7 +1,5 @@
 """Task 03.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Number, Subject, check
 
 from ..common import EXACT
@@ -10,7 +8,6 @@ from .common import measured
 
 @check(
     "03.3.hidden",
-    task="03.3",
     points=4,
     calls=("loss_and_grad",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 03.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Number, Subject, check
 
 from ..common import CHAINED
@@ -10,7 +8,6 @@ from .common import sampled
 
 @check(
     "03.4.hidden",
-    task="03.4",
     points=3,
     calls=("largest_curvature",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 03.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 
@@ -12,7 +10,6 @@ from .common import measured
 
 @check(
     "03.5.recovers",
-    task="03.5",
     points=4,
     calls=("recover_texture",),
     needs=EARLIER,

@@ -1,7 +1,5 @@
 """Task 03.6, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import EXACT
@@ -20,7 +18,6 @@ def tiled(t, n):
 
 @check(
     "03.6.hidden",
-    task="03.6",
     points=1,
     calls=("build_mips",),
     visibility="hidden",

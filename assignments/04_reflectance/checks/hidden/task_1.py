@@ -1,7 +1,5 @@
 """Task 04.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -17,7 +15,6 @@ def some_model(t, n):
 
 @check(
     "04.1.hidden",
-    task="04.1",
     points=2,
     calls=("furnace",),
     visibility="hidden",

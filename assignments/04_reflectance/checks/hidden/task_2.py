@@ -1,7 +1,5 @@
 """Task 04.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -11,7 +9,6 @@ from .common import pairs
 
 @check(
     "04.2.hidden",
-    task="04.2",
     points=3,
     calls=("ggx_lobe",),
     visibility="hidden",

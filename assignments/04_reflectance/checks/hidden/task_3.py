@@ -1,7 +1,5 @@
 """Task 04.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import SHARP, directions
@@ -10,7 +8,6 @@ from .common import pairs
 
 @check(
     "04.3.hidden",
-    task="04.3",
     points=2,
     calls=("ggx_pdf",),
     needs=("ggx_lobe",),

@@ -1,7 +1,5 @@
 """Task 04.4, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -11,7 +9,6 @@ from ..task_4 import cells, chi_square, drawn, twice
 
 @check(
     "04.4.hidden",
-    task="04.4",
     points=3,
     calls=("sample_ggx",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 04.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -11,7 +9,6 @@ from .common import painted
 
 @check(
     "04.5.hidden",
-    task="04.5",
     points=3,
     calls=("gltf",),
     needs=("ggx_lobe",),

@@ -1,7 +1,5 @@
 """Task 04.6, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
@@ -12,7 +10,6 @@ from .common import painted
 
 @check(
     "04.6.hidden",
-    task="04.6",
     points=4,
     calls=("gltf_backward",),
     needs=("ggx_lobe", "gltf"),

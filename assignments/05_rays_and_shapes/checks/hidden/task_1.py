@@ -1,7 +1,5 @@
 """Task 05.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Subject, check
 
@@ -16,7 +14,6 @@ def struck(t, n):
 
 @check(
     "05.1.hidden",
-    task="05.1",
     points=2,
     calls=("hit_sphere",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 05.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 
@@ -17,7 +15,6 @@ def crossed(t, n):
 
 @check(
     "05.2.hidden",
-    task="05.2",
     points=2,
     calls=("hit_triangle",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 05.3, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 
@@ -11,7 +9,6 @@ from ..task_3 import arrivals, refracted
 
 @check(
     "05.3.hidden",
-    task="05.3",
     points=2,
     calls=("refract",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 05.4, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 
@@ -17,7 +15,6 @@ def approached(t, n):
 
 @check(
     "05.4.hidden",
-    task="05.4",
     points=2,
     calls=("march_sdf",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 05.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Items, Subject, check
 
@@ -17,7 +15,6 @@ def stacked(t, n):
 
 @check(
     "05.5.hidden",
-    task="05.5",
     points=2,
     calls=("build_bvh",),
     visibility="hidden",

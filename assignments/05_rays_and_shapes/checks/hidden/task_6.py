@@ -1,7 +1,5 @@
 """Task 05.6, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Items, Subject, check
 
 from ..common import EXACT
@@ -19,7 +17,6 @@ def searched(t, n):
 
 @check(
     "05.6.hidden",
-    task="05.6",
     points=2,
     calls=("traverse",),
     needs=("build_bvh",),

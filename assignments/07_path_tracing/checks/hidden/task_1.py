@@ -1,7 +1,5 @@
 """Task 07.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -19,7 +17,6 @@ def pointed(t, n):
 
 @check(
     "07.1.hidden",
-    task="07.1",
     points=2,
     calls=("light_pdf",),
     visibility="hidden",

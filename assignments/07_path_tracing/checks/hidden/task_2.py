@@ -1,7 +1,5 @@
 """Task 07.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -11,7 +9,6 @@ from ..task_2 import weights_of
 
 @check(
     "07.2.hidden",
-    task="07.2",
     points=1,
     calls=("mis_weight",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 07.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import EXACT, TASK_3, direct
@@ -10,7 +8,6 @@ from .common import estimated, looked_at, mixed_room
 
 @check(
     "07.3.hidden",
-    task="07.3",
     points=6,
     calls=("direct_light",),
     needs=TASK_3,

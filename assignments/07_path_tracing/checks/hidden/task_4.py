@@ -1,7 +1,5 @@
 """Task 07.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Subject, check
 
 from ..common import EXACT
@@ -10,7 +8,6 @@ from ..task_4 import played
 
 @check(
     "07.4.hidden",
-    task="07.4",
     points=1,
     calls=("roulette",),
     visibility="hidden",

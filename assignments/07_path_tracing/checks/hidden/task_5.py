@@ -1,7 +1,5 @@
 """Task 07.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -12,7 +10,6 @@ from .common import mixed_room
 
 @check(
     "07.5.hidden",
-    task="07.5",
     points=3,
     calls=("trace_paths",),
     needs=TASK_5,

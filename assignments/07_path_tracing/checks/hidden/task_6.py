@@ -1,23 +1,20 @@
 """Task 07.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Subject, check
+from photograd_course.grading import Array, Items, Number, Subject, checks_for
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import TASK_3, nodes, scene_of
 from ..task_6 import GATE, slopes
 from .common import estimated, looked_at, mixed_room
 
+check = checks_for(calls=("direct_light_backward",), visibility="hidden")
+
 
 @check(
     "07.6.hidden",
-    task="07.6",
     points=2,
-    calls=("direct_light_backward",),
     needs=TASK_3,
-    visibility="hidden",
     tolerance=GATE,
     sole="two lamps, shadows, a ball and something matte",
     battery=[
@@ -50,11 +47,8 @@ def glossy_table(color, metalness, roughness):
 
 @check(
     "07.6.recover",
-    task="07.6",
     points=3,
-    calls=("direct_light_backward",),
     needs=(*TASK_3, "direct_light"),
-    visibility="hidden",
     sole="what it is for: a base color and a roughness, found in a picture",
 )
 def a_material_is_recovered(t):

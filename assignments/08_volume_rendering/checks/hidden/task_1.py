@@ -1,7 +1,5 @@
 """Task 08.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import EXACT, random_rays, seen
@@ -9,7 +7,6 @@ from ..common import EXACT, random_rays, seen
 
 @check(
     "08.1.hidden",
-    task="08.1",
     points=2,
     calls=("composite",),
     visibility="hidden",

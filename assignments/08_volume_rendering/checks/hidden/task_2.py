@@ -1,13 +1,15 @@
 """Task 08.2, hidden checks."""
 
-from __future__ import annotations
-
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, checks_for
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import random_rays, seen
 from ..task_2 import slopes_of
 from .common import SUMS
+
+check = checks_for(
+    calls=("composite_adjoint",), needs=("composite",), tolerance=SUMS, visibility="hidden"
+)
 
 # A forward pass in whole arrays and an adjoint that walks the steps in a loop, as the handout has
 # it, stand 5 to 8 to one, what goes through the pipe included; one that walks all later steps for
@@ -22,12 +24,7 @@ def moved(t, n):
 
 @check(
     "08.2.hidden",
-    task="08.2",
     points=4,
-    calls=("composite_adjoint",),
-    needs=("composite",),
-    visibility="hidden",
-    tolerance=SUMS,
     sole="the same mistakes at values that are not known beforehand",
     battery=[Subject("composite_adjoint", moved, lambda n: slopes_of((n, 6), 3))],
 )
@@ -42,15 +39,7 @@ def adjoints_of_random_rays(t):
             t.close(f"d_{name}", yours, mine)
 
 
-@check(
-    "08.2.cost",
-    task="08.2",
-    points=2,
-    calls=("composite_adjoint",),
-    needs=("composite",),
-    visibility="hidden",
-    tolerance=SUMS,
-)
+@check("08.2.cost", points=2)
 def the_adjoint_of_a_ray_is_cheap(t):
     """For rays of 160 steps the adjoint is right, and costs a few forward calls."""
     given = random_rays(t, 80, 160, 3, thick=0.1)

@@ -1,7 +1,5 @@
 """Task 08.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import EXACT, random_box
@@ -15,7 +13,6 @@ def cast(t, n):
 
 @check(
     "08.3.hidden",
-    task="08.3",
     points=2,
     calls=("ray_box",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 08.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import EXACT
@@ -10,7 +8,6 @@ from .common import placed
 
 @check(
     "08.4.hidden",
-    task="08.4",
     points=2,
     calls=("trilinear",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 08.5, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 from photograd_course.grading.adjoint_gate import require_cheap
 
@@ -11,7 +9,6 @@ from .common import placed
 
 @check(
     "08.5.hidden",
-    task="08.5",
     points=2,
     calls=("trilinear_adjoint",),
     visibility="hidden",

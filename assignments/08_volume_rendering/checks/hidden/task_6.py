@@ -1,7 +1,5 @@
 """Task 08.6, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 from photograd_course.grading.adjoint_gate import require_cheap
 
@@ -17,7 +15,6 @@ def pictured(t, n):
 
 @check(
     "08.6.hidden",
-    task="08.6",
     points=3,
     calls=("render_adjoint",),
     needs=EARLIER,

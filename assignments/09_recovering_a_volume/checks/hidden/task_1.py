@@ -1,7 +1,5 @@
 """Task 09.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Number, Subject, check
 
 from ..common import EXACT
@@ -11,7 +9,6 @@ from .common import alike
 
 @check(
     "09.1.hidden",
-    task="09.1",
     points=1,
     calls=("psnr",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 09.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Subject, check
 
@@ -19,7 +17,6 @@ def turned(rng):
 
 @check(
     "09.2.hidden",
-    task="09.2",
     points=3,
     calls=("ray_batch",),
     visibility="hidden",

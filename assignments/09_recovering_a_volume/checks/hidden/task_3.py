@@ -1,7 +1,5 @@
 """Task 09.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import EXACT, loss_and_slope
@@ -10,7 +8,6 @@ from .common import alike
 
 @check(
     "09.3.hidden",
-    task="09.3",
     points=2,
     calls=("mse_and_cotangent",),
     visibility="hidden",

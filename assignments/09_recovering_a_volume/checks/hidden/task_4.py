@@ -1,7 +1,5 @@
 """Task 09.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Number, Subject, check
 from photograd_course.grading.adjoint_gate import require_cheap
 
@@ -14,7 +12,6 @@ TV_COST = 2500.0
 
 @check(
     "09.4.hidden",
-    task="09.4",
     points=4,
     calls=("tv_loss_adjoint",),
     needs=("psnr",),

@@ -1,22 +1,18 @@
 """Task 09.5, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, checks_for
 
 from ..common import EARLIER, EXACT, random_views
 from ..task_5 import sign_map
 from .common import photographed, two_balls
 
+check = checks_for(calls=("gradient_sign_map",), needs=EARLIER, visibility="hidden")
+
 
 @check(
     "09.5.hidden",
-    task="09.5",
     points=2,
-    calls=("gradient_sign_map",),
-    needs=EARLIER,
-    visibility="hidden",
     sole="the same mistakes at volumes that are not known beforehand",
     battery=[
         Subject(
@@ -37,11 +33,7 @@ def signs_of_random_volumes(t):
 
 @check(
     "09.5.scene",
-    task="09.5",
     points=3,
-    calls=("gradient_sign_map",),
-    needs=EARLIER,
-    visibility="hidden",
     sole="what the handout's pictures claim, on a scene that nobody has seen",
 )
 def inside_more_and_outside_less(t):

@@ -1,13 +1,13 @@
 """Task 09.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, checks_for
 
 from ..common import random_views
 from ..task_6 import ALL, CHAINED, fitted, small_start
 from .common import photographed, rendered, two_balls
+
+check = checks_for(calls=("fit_volume",), needs=ALL, visibility="hidden")
 
 
 def recovering(t, n):
@@ -34,11 +34,7 @@ def telling_start(t, views, shape, seed):
 
 @check(
     "09.6.hidden",
-    task="09.6",
     points=3,
-    calls=("fit_volume",),
-    needs=ALL,
-    visibility="hidden",
     tolerance=CHAINED,
     sole="the same mistakes at scenes that are not known beforehand",
     battery=[
@@ -66,11 +62,7 @@ def fits_of_random_scenes(t):
 
 @check(
     "09.6.recovers",
-    task="09.6",
     points=6,
-    calls=("fit_volume",),
-    needs=ALL,
-    visibility="hidden",
     seconds=60.0,
     sole="the whole: a scene that nobody has seen, from its photographs",
 )

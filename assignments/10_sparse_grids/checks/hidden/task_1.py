@@ -1,7 +1,5 @@
 """Task 10.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import FAITHFUL, Rows, blocks
@@ -15,7 +13,6 @@ def halved(t, n):
 
 @check(
     "10.1.hidden",
-    task="10.1",
     points=2,
     calls=("octree_from_dense",),
     visibility="hidden",

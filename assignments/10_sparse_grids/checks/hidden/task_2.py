@@ -1,7 +1,5 @@
 """Task 10.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -16,7 +14,6 @@ def skipping(t, n):
 
 @check(
     "10.2.hidden",
-    task="10.2",
     points=6,
     calls=("skip_empty",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 10.3, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -16,7 +14,6 @@ def inserted(t, n):
 
 @check(
     "10.3.hidden",
-    task="10.3",
     points=1,
     calls=("voxel_hash_insert",),
     visibility="hidden",

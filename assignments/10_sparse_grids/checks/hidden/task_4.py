@@ -1,7 +1,5 @@
 """Task 10.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..task_4 import EXACT, back, some_samples
@@ -14,7 +12,6 @@ def gathered(t, n):
 
 @check(
     "10.4.hidden",
-    task="10.4",
     points=3,
     calls=("sample_sparse_adjoint",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 10.5, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Subject, check
 
 from ..common import FAITHFUL, Rows, same_voxels
@@ -16,7 +14,6 @@ def shared(t, n):
 
 @check(
     "10.5.hidden",
-    task="10.5",
     points=2,
     calls=("prune_and_dilate",),
     visibility="hidden",

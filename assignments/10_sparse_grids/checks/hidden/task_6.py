@@ -1,21 +1,17 @@
 """Task 10.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import checks_for
 
 from ..common import looking, same_voxels
 from ..task_6 import CHAINED, STEPS, fitted, small_case
 
+check = checks_for(calls=("fit_sparse",), needs=STEPS, visibility="hidden")
+
 
 @check(
     "10.6.hidden",
-    task="10.6",
     points=4,
-    calls=("fit_sparse",),
-    needs=STEPS,
-    visibility="hidden",
     tolerance=CHAINED,
     sole="the same mistakes at scenes that are not known beforehand",
 )
@@ -45,11 +41,7 @@ def rods(t, n):
 
 @check(
     "10.6.topology",
-    task="10.6",
     points=5,
-    calls=("fit_sparse",),
-    needs=STEPS,
-    visibility="hidden",
     seconds=60.0,
     sole="the experiment: what the gradient cannot bring back, and who can",
 )

@@ -1,7 +1,5 @@
 """Task 11.1, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -10,7 +8,6 @@ from ..common import EXACT, basis, unit
 
 @check(
     "11.1.hidden",
-    task="11.1",
     points=4,
     calls=("sh_basis",),
     visibility="hidden",

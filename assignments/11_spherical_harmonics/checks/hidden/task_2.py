@@ -1,7 +1,5 @@
 """Task 11.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Subject, check
 
@@ -15,7 +13,6 @@ def weighted(t, n):
 
 @check(
     "11.2.hidden",
-    task="11.2",
     points=3,
     calls=("sh_project",),
     needs=("sh_basis",),

@@ -1,23 +1,20 @@
 """Task 11.3, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, Tolerance, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT
 from ..task_3 import adjoint, colors
 
+check = checks_for(
+    calls=("sh_color_adjoint",), needs=("sh_basis",), tolerance=EXACT, visibility="hidden"
+)
+
 
 @check(
     "11.3.hidden",
-    task="11.3",
     points=5,
-    calls=("sh_color_adjoint",),
-    needs=("sh_basis",),
-    visibility="hidden",
-    tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
     battery=[
         Subject(
@@ -44,15 +41,7 @@ def the_adjoint_at_random_values(t):
         )
 
 
-@check(
-    "11.3.cost",
-    task="11.3",
-    points=2,
-    calls=("sh_color_adjoint",),
-    needs=("sh_basis",),
-    visibility="hidden",
-    tolerance=EXACT,
-)
+@check("11.3.cost", points=2)
 def the_adjoint_is_cheap(t):
     """For 60 colors of degree 4 the adjoint is right, and costs a few forward calls."""
     c, v, g = colors(t.rng, 60, 4, 3)

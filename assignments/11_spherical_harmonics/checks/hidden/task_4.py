@@ -1,7 +1,5 @@
 """Task 11.4, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import EXACT, turn
@@ -10,7 +8,6 @@ from ..task_4 import rotated
 
 @check(
     "11.4.hidden",
-    task="11.4",
     points=3,
     calls=("sh_rotate",),
     needs=("sh_basis", "sh_project"),

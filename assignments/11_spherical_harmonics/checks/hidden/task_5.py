@@ -1,7 +1,5 @@
 """Task 11.5, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Subject, check
 
 from ..common import EXACT, unit
@@ -15,7 +13,6 @@ def among(t, n):
 
 @check(
     "11.5.hidden",
-    task="11.5",
     points=2,
     calls=("probe_irradiance",),
     needs=("sh_basis",),

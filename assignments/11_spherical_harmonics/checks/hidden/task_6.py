@@ -1,21 +1,17 @@
 """Task 11.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, checks_for
 
 from ..common import unit
 from ..task_6 import CHAINED, EARLIER, fitted, photographs, small_case
 
+check = checks_for(calls=("fit_plenoxels",), needs=EARLIER, visibility="hidden")
+
 
 @check(
     "11.6.hidden",
-    task="11.6",
     points=2,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
-    visibility="hidden",
     tolerance=CHAINED,
     sole="the same mistakes at scenes that are not known beforehand",
     battery=[
@@ -59,11 +55,7 @@ def glossy_scene(t, n):
 
 @check(
     "11.6.gain",
-    task="11.6",
     points=4,
-    calls=("fit_plenoxels",),
-    needs=EARLIER,
-    visibility="hidden",
     seconds=60.0,
     sole="the whole: a scene that nobody has seen, from its pictures",
 )

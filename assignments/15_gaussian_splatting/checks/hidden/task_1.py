@@ -1,7 +1,5 @@
 """Task 15.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
@@ -17,7 +15,6 @@ def turned_shapes(t, n):
 
 @check(
     "15.1.hidden",
-    task="15.1",
     points=3,
     calls=("covariance",),
     adjoints=("covariance",),

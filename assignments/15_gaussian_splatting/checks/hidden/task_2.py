@@ -1,7 +1,5 @@
 """Task 15.2, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent
@@ -23,7 +21,6 @@ def pulled(t, n):
 
 @check(
     "15.2.hidden",
-    task="15.2",
     points=3,
     calls=("project",),
     adjoints=("project",),

@@ -1,7 +1,5 @@
 """Task 15.3, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
@@ -12,7 +10,6 @@ from .common import derivatives, values
 
 @check(
     "15.3.hidden",
-    task="15.3",
     points=2,
     calls=("screen_alpha",),
     adjoints=("screen_alpha",),

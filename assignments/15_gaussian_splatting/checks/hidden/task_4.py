@@ -1,7 +1,5 @@
 """Task 15.4, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent
@@ -13,7 +11,6 @@ from .common import derivatives, values
 
 @check(
     "15.4.hidden",
-    task="15.4",
     points=3,
     calls=("composite",),
     adjoints=("composite",),

@@ -1,7 +1,5 @@
 """Task 15.5, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Record, Subject, check
 from photograd_course.grading.adjoint_gate import random_cotangent, require_cheap
 
@@ -19,7 +17,6 @@ def pictured(t, n):
 
 @check(
     "15.5.hidden",
-    task="15.5",
     points=2,
     calls=("render",),
     needs=EARLIER,

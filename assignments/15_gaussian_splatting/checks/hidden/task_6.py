@@ -1,12 +1,12 @@
 """Task 15.6, hidden checks."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Subject, check
+from photograd_course.grading import Array, CheckFailed, Subject, checks_for
 
 from ..common import EARLIER, EXACT, SCENE, some_camera, some_scene
 from ..task_6 import denser
+
+check = checks_for(calls=("densify",), visibility="hidden")
 
 
 class Changed:
@@ -25,11 +25,8 @@ def crowded(t, n):
 
 @check(
     "15.6.hidden",
-    task="15.6",
     points=1,
-    calls=("densify",),
     needs=("covariance",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at scenes that are not known beforehand",
     battery=[Subject("adapters.densify", crowded, lambda _: Changed(), has_right=False)],
@@ -66,11 +63,8 @@ def striped_picture(size):
 
 @check(
     "15.6.gain",
-    task="15.6",
     points=4,
-    calls=("densify",),
     needs=(*EARLIER, "render"),
-    visibility="hidden",
     seconds=60.0,
     sole="the whole: what more Gaussians are good for",
 )

@@ -56,7 +56,6 @@ ROUNDING = Tolerance(1e-12, "doubling is exact; the nearest wrong answer is off 
 
 @check(
     "NN.1.known",
-    task="NN.1",
     points=40,
     calls=("twice",),
     tolerance=ROUNDING,
@@ -83,7 +82,6 @@ from ..task_1 import ROUNDING
 
 @check(
     "NN.1.random",
-    task="NN.1",
     points=35,
     calls=("twice",),
     visibility="hidden",

@@ -1,7 +1,5 @@
 """Task 90.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Number, check
 
@@ -10,7 +8,6 @@ from .common import ROUNDING
 
 @check(
     "90.1.value",
-    task="90.1",
     points=3,
     calls=("weighted_sum",),
     tolerance=ROUNDING,

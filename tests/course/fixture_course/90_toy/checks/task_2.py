@@ -1,7 +1,5 @@
 """Task 90.2, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Number, check
 from photograd_course.grading.adjoint_gate import (
@@ -11,13 +9,7 @@ from photograd_course.grading.adjoint_gate import (
 )
 
 
-@check(
-    "90.2.differences",
-    task="90.2",
-    points=3,
-    calls=("weighted_sum_backward",),
-    needs=("weighted_sum",),
-)
+@check("90.2.differences", points=3, calls=("weighted_sum_backward",), needs=("weighted_sum",))
 def derivatives_agree_with_differences(t):
     """Both derivatives agree with central differences of your own forward function."""
     point = {"w": t.rng.uniform(0.5, 2.0, 6), "x": t.rng.uniform(-1.0, 1.0, 6)}

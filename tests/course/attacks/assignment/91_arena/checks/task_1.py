@@ -1,14 +1,12 @@
 """Task 91.1, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Number, check
 
 from .common import ROUNDING
 
 
-@check("91.1.value", task="91.1", points=3, calls=("weighted_sum",), tolerance=ROUNDING)
+@check("91.1.value", points=3, calls=("weighted_sum",), tolerance=ROUNDING)
 def value_at_known_points(t):
     """exp(0) = 1 and exp(-log 2) = 1/2 give the sums they must."""
     w = t.rng.uniform(1.0, 2.0, 5)

@@ -1,14 +1,12 @@
 """Task 91.3, public checks."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, check
 
 from .common import ROUNDING
 
 
-@check("91.3.services", task="91.3", points=3, calls=("descend",), tolerance=ROUNDING)
+@check("91.3.services", points=3, calls=("descend",), tolerance=ROUNDING)
 def a_quadratic_contracts(t):
     """On a quadratic of curvature lambda each step shrinks x by 1 - tau lambda."""
     curvature = t.rng.uniform(0.5, 1.5, 3)

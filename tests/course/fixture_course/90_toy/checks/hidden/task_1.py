@@ -1,7 +1,5 @@
 """Task 90.1, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Number, check
 
 from ..common import ROUNDING
@@ -9,7 +7,6 @@ from ..common import ROUNDING
 
 @check(
     "90.1.hidden",
-    task="90.1",
     points=3,
     calls=("weighted_sum",),
     visibility="hidden",

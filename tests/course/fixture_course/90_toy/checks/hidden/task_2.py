@@ -1,7 +1,5 @@
 """Task 90.2, hidden checks."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Array, Items, Number, check
 from photograd_course.grading.adjoint_gate import require_cheap
 
@@ -10,7 +8,6 @@ from ..common import ROUNDING
 
 @check(
     "90.2.cost",
-    task="90.2",
     points=3,
     calls=("weighted_sum_backward",),
     visibility="hidden",
