@@ -2,7 +2,7 @@
 
 import numpy as np
 from photograd_course.grading import Array, Number, Tolerance, checks_for
-from photograd_course.grading.adjoint_gate import require_gradients
+from photograd_course.grading.adjoint_gate import agrees_with_finite_differences
 
 check = checks_for(calls=("loss_gradient",))
 
@@ -25,7 +25,9 @@ def agrees_with_differences(t):
     def forward(point):
         return t.call("loss", point["picture"], photograph, returns=Number())
 
-    require_gradients(t, {"picture": gradient}, forward, {"picture": picture}, np.ones(()))
+    agrees_with_finite_differences(
+        t, {"picture": gradient}, forward, {"picture": picture}, np.ones(())
+    )
 
 
 @check(

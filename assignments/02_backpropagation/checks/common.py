@@ -1,7 +1,5 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Integer, Number, Record, Tolerance
 

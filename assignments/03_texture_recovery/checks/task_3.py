@@ -2,7 +2,7 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
-from photograd_course.grading.adjoint_gate import require_gradients
+from photograd_course.grading.adjoint_gate import agrees_with_finite_differences
 
 from .common import EXACT
 
@@ -49,4 +49,4 @@ def the_gradient_agrees_with_differences(t):
     def forward(point):
         return t.call("loss_and_grad", point["T"], uv, target, returns=result)[0]
 
-    require_gradients(t, {"T": d_T}, forward, {"T": T}, np.ones(()), QUADRATIC)
+    agrees_with_finite_differences(t, {"T": d_T}, forward, {"T": T}, np.ones(()), QUADRATIC)

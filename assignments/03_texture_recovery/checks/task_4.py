@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Number, Tolerance, checks_for
+from photograd_course.grading.adjoint_gate import matrix_of
 
-from .common import EXACT, centers, sampling_matrix
+from .common import EXACT, centers
 
 check = checks_for(
     calls=("largest_curvature",),
@@ -45,5 +46,5 @@ def many_rounds_find_the_largest_eigenvalue(t):
     shape = (8, 7)
     uv = t.rng.uniform(0.0, 1.0, (150, 2)) ** 2
     got = t.call("largest_curvature", shape, uv, 300, returns=Number())
-    matrix = sampling_matrix(t, shape, uv)
+    matrix = matrix_of(t, "bilinear_sample", shape, uv)
     t.close("largest eigenvalue", got, np.linalg.norm(matrix, 2) ** 2 * 2 / len(uv))

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, agree, checks_for
+from photograd_course.grading.adjoint_gate import matrix_of
 
-from .common import CHAINED, sampling_matrix
+from .common import CHAINED
 
 FIRST_STEP = Tolerance(
     1e-3, "40 rounds on gathered samples leave 1e-15, the nearest wrong one (step_whole) 0.053"
@@ -47,7 +48,7 @@ def the_first_step(t):
     result = Items(Number(), Array(shape), names=("L", "d_T"))
     before, d_T = t.call("loss_and_grad", T0, uv, target, returns=result)
     after, _ = t.call("loss_and_grad", T, uv, target, returns=result)
-    curvature = np.linalg.norm(sampling_matrix(t, shape[:2], uv), 2) ** 2 * 2 / 150
+    curvature = np.linalg.norm(matrix_of(t, "bilinear_sample", shape[:2], uv), 2) ** 2 * 2 / 150
     t.close("step times gradient", T0 - T, 0.95 * 2 / curvature * d_T)
     t.close("losses", losses, [before, after], CHAINED)
 
@@ -101,7 +102,7 @@ def unseen_texels_stay(t):
     shape = (6, 5, 2)
     uv, T0 = t.rng.uniform(0.0, 0.55, (40, 2)), t.rng.uniform(0.0, 1.0, shape)
     fits = t.call("bilinear_sample", T0, uv, returns=Array((40, 2)))
-    nowhere = ~sampling_matrix(t, shape[:2], uv).any(axis=0).reshape(shape[:2])
+    nowhere = ~matrix_of(t, "bilinear_sample", shape[:2], uv).any(axis=0).reshape(shape[:2])
     for target in (t.rng.uniform(0.0, 1.0, (40, 2)), fits):
         T, _, unseen = recover(t, T0, uv, target, 3)
         t.require(bool((T[nowhere] == T0[nowhere]).all()), "a texel without samples has changed")

@@ -1,11 +1,10 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from photograd_course.grading import Array, Tolerance
+from photograd_course.grading.generators import upper_directions
 
 # Evidence: worst of the solution and three alternatives, against the nearest of 92 named wrong
 # solutions.
@@ -22,26 +21,9 @@ TABLE = Tolerance(
 )
 
 
-def directions(rng, n, low=0.1):
-    """(n, 3), unit vectors above the surface, heights from `low` up."""
-    z, phi = rng.uniform(low, 1.0, n), rng.uniform(0.0, 2 * np.pi, n)
-    r = np.sqrt(1 - z * z)
-    return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1)
-
-
 def viewer(z, n):
     """(n, 3), all the direction of height z in the plane y = 0."""
     return np.tile([math.sqrt(1 - z * z), 0.0, z], (n, 1))
-
-
-def dome(heights, turns):
-    """Directions above the surface and their solid angles, for integrals."""
-    nodes, weights = np.polynomial.legendre.leggauss(heights)
-    root = (nodes + 1) / 2
-    z, phi = np.meshgrid(root**2, (np.arange(turns) + 0.5) * (2 * np.pi / turns), indexing="ij")
-    r = np.sqrt(1 - z * z)
-    w = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3)
-    return w, np.repeat(root * weights * (2 * np.pi / turns), turns)
 
 
 def turned(w, angle):
@@ -52,7 +34,7 @@ def turned(w, angle):
 
 def buried(rng, n):
     """Pairs of directions of which at least one is below the surface or in it."""
-    wo, wi = directions(rng, n), directions(rng, n)
+    wo, wi = upper_directions(rng, n), upper_directions(rng, n)
     wo[::3, 2] *= -1
     wi[1::3, 2] *= -1
     wo[2::3, 2] *= -1

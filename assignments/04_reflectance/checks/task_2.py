@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 from photograd_course.grading import checks_for
+from photograd_course.grading.generators import hemisphere_quadrature, upper_directions
 
-from .common import EXACT, TABLE, buried, directions, dome, lobes, turned, viewer
+from .common import EXACT, TABLE, buried, lobes, turned, viewer
 
 check = checks_for(calls=("ggx_lobe",), tolerance=EXACT)
 
@@ -31,7 +32,7 @@ def straight_back(t):
 )
 def the_roughest_surface(t):
     """At roughness 1 facets lie as on a ball: the lobe is 1 / (2 pi (o_z + i_z))."""
-    wo, wi = directions(t.rng, 20), directions(t.rng, 20)
+    wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     right = 1 / (2 * np.pi * (wo[:, 2] + wi[:, 2]))
     t.close("lobe at roughness 1", lobes(t, wo, wi, 1.0), right, reveal=True)
 
@@ -45,7 +46,7 @@ def the_roughest_surface(t):
 def light_could_go_the_other_way(t):
     """Exchanging wo and wi, or turning both around the normal, changes nothing."""
     for r in t.rng.uniform(0.3, 1.0, 3):
-        wo, wi = directions(t.rng, 20), directions(t.rng, 20)
+        wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
         there = lobes(t, wo, wi, r)
         t.close("lobe with wo and wi exchanged", lobes(t, wi, wo, r), there)
         angle = float(t.rng.uniform(0.5, 3.0))
@@ -66,7 +67,7 @@ def nothing_below_the_surface(t):
     """A direction below the surface, and opposite ones: exactly 0. Above: more than 0."""
     wo, wi = buried(t.rng, 12)
     t.require(not lobes(t, wo, wi, 0.5).any(), "below the surface the lobe must be exactly 0")
-    some = lobes(t, directions(t.rng, 12), directions(t.rng, 12), 0.5)
+    some = lobes(t, upper_directions(t.rng, 12), upper_directions(t.rng, 12), 0.5)
     t.require(bool((some > 0).all()), "above the surface the lobe must be more than 0")
 
 
@@ -91,7 +92,7 @@ MIRRORS = (
 )
 def what_mirrors_return(t):
     """What surfaces of perfect mirrors return: 1 - ln 2 at roughness 1, seen from above."""
-    wi, solid_angles = dome(64, 160)
+    wi, solid_angles = hemisphere_quadrature(64, 160)
     got = []
     for r, z, _ in MIRRORS:
         got.append(solid_angles @ (wi[:, 2] * lobes(t, viewer(z, len(wi)), wi, r)))

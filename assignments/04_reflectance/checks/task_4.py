@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 from photograd_course.grading import Array, CheckFailed, checks_for
+from photograd_course.grading.generators import hemisphere_quadrature, upper_directions
 
-from .common import EXACT, densities, directions, dome, lobes, turned, viewer
+from .common import EXACT, densities, lobes, turned, viewer
 
 check = checks_for(calls=("sample_ggx",))
 
@@ -68,7 +69,7 @@ def chi_square(wi, shares):
 def compare_samples(t, wo, r, shares):
     """Fail with what is below the surface, where samples lie on average, and both by cells."""
     wi = drawn(t, wo, r, t.rng.random((len(wo), 2)))
-    w, solid_angles = dome(48, 96)
+    w, solid_angles = hemisphere_quadrature(48, 96)
     expected = solid_angles * densities(t, wo[: len(w)], w, r)
     above, share = wi[:, 2] > 0, max(float(expected.sum()), 1e-12)
 
@@ -97,7 +98,7 @@ def compare_samples(t, wo, r, shares):
 def samples_are_mirrored_at_facets(t):
     """Unit vectors, each mirrored at a facet of the surface that the viewer sees."""
     for r in (0.1, 0.5, 1.0):
-        wo = directions(t.rng, 200, 0.05)
+        wo = upper_directions(t.rng, 200, 0.05)
         wi = drawn(t, wo, r, t.rng.random((200, 2)))
         t.close("lengths", np.linalg.norm(wi, axis=1), np.ones(200), reveal=True)
         h = wo + wi
@@ -114,7 +115,7 @@ def samples_are_mirrored_at_facets(t):
 )
 def numbers_decide(t):
     """The same rows of u2 give the same directions, in any order."""
-    wo, u2 = directions(t.rng, 50), t.rng.random((50, 2))
+    wo, u2 = upper_directions(t.rng, 50), t.rng.random((50, 2))
     order = t.rng.permutation(50)
     t.close(
         "directions in another order",
@@ -154,7 +155,7 @@ def samples_have_the_density(t):
 )
 def weights_average_to_the_albedo(t):
     """The mean weight of 5,000 samples is the albedo that the lobe has in the furnace (z-test)."""
-    wi, solid_angles = dome(64, 128)
+    wi, solid_angles = hemisphere_quadrature(64, 128)
     for r, z in ((0.7, 0.5), (1.0, 0.9)):
         right = solid_angles @ (wi[:, 2] * lobes(t, viewer(z, len(wi)), wi, r))
         wo = viewer(z, 5_000)

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import checks_for
+from photograd_course.grading.generators import hemisphere_quadrature, upper_directions
 
-from .common import EXACT, TABLE, buried, directions, dome, lobes, material, shaded, viewer
+from .common import EXACT, TABLE, buried, lobes, material, shaded, viewer
 
 check = checks_for(calls=("gltf",), needs=("ggx_lobe",), tolerance=EXACT)
 
@@ -36,7 +37,7 @@ def straight_on(t):
 )
 def white_metal_is_the_lobe(t):
     """White metal is `ggx_lobe`; black metal reflects only what Schlick's ramp gives it."""
-    wo, wi = directions(t.rng, 20), directions(t.rng, 20)
+    wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     r = float(t.rng.uniform(0.3, 1.0))
     lobe = lobes(t, wo, wi, r)
     got = shaded(t, wo, wi, np.ones((20, 3)), np.ones(20), np.full(20, r))
@@ -54,7 +55,7 @@ def white_metal_is_the_lobe(t):
 )
 def half_metal_is_half_of_each(t):
     """f is linear in the metalness: half metal is half of each, in each channel."""
-    wo, wi = directions(t.rng, 20), directions(t.rng, 20)
+    wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     color, m, r = material(t.rng, 20)
     ends = [shaded(t, wo, wi, color, np.full(20, k), r) for k in (0.0, 1.0)]
     t.close(
@@ -70,7 +71,7 @@ def half_metal_is_half_of_each(t):
 )
 def reciprocal_and_above(t):
     """Exchanging wo and wi changes nothing; below the surface everything is exactly 0."""
-    wo, wi = directions(t.rng, 20), directions(t.rng, 20)
+    wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     given = material(t.rng, 20)
     t.close("f with wo and wi exchanged", shaded(t, wi, wo, *given), shaded(t, wo, wi, *given))
     wo, wi = buried(t.rng, 12)
@@ -88,7 +89,7 @@ def reciprocal_and_above(t):
 )
 def what_white_returns(t):
     """White of roughness 0.5, seen from 0.6: dielectric 1.0024, half metal 0.9371, metal 0.8717."""
-    wi, solid_angles = dome(64, 128)
+    wi, solid_angles = hemisphere_quadrature(64, 128)
     got = []
     for m in (0.0, 0.5, 1.0):
         f = shaded(

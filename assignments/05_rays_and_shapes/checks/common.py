@@ -1,9 +1,7 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
-from photograd_course.grading import Items, Tolerance
+from photograd_course.grading import Array, Items, Tolerance
 from photograd_course.grading.failures import CheckFailed
 
 # Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
@@ -12,45 +10,12 @@ EXACT = Tolerance(1e-9, "right ones differ by 1e-12 or less, wrong ones by 1e-3 
 T_MIN, CLOSE, LEAF = 1e-9, 1e-9, 2
 
 
-class Distances:
-    """An array (R,) of float64, each above 0; infinite where nothing is met."""
-
-    def __init__(self, count):
-        self.count = count
-
-    def require(self, value, where):
-        fits = isinstance(value, np.ndarray) and value.dtype == np.float64
-        if not fits or value.shape != (self.count,):
-            got = f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else type(value)
-            raise CheckFailed(
-                f"{where}: expected a float64 array of shape ({self.count},), got {got}"
-            )
-        if not (value > 0).all():
-            at = int(np.argwhere(~(value > 0))[0, 0])
-            raise CheckFailed(
-                f"{where}: t at index {at} is {value[at]}; "
-                "it is above 0, and infinite where nothing is met"
-            )
+WHOLE = Array((None,), "i8")
 
 
-class Whole:
-    """An int64 array with any number of rows and this many axes."""
-
-    def require(self, value, where):
-        fits = isinstance(value, np.ndarray) and value.dtype == np.int64 and value.ndim == 1
-        if not fits:
-            got = f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else type(value)
-            raise CheckFailed(f"{where}: expected an int64 array of shape (...,), got {got}")
-
-
-class Boxes:
-    """A finite array (N, 2, 3) of float64."""
-
-    def require(self, value, where):
-        fits = isinstance(value, np.ndarray) and value.dtype == np.float64 and value.ndim == 3
-        if not fits or value.shape[1:] != (2, 3) or not np.isfinite(value).all():
-            got = f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else type(value)
-            raise CheckFailed(f"{where}: expected finite float64 numbers (N, 2, 3), got {got}")
+def distances(count):
+    """What each of count rays meets: t above 0, infinite where there is nothing."""
+    return Array((count,), finite=False, above=0.0)
 
 
 def same_hits(t, got, right, tolerance=None, hint=""):
@@ -69,12 +34,6 @@ def same_hits(t, got, right, tolerance=None, hint=""):
         t.close("t", got[met], right[met], tolerance, hint=hint)
 
 
-def units(t, count):
-    """Random unit vectors (count, 3)."""
-    v = t.rng.normal(size=(count, 3))
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
-
-
 def lengths(t, count):
     """Random lengths (count, 1) of directions."""
     return np.exp(t.rng.uniform(-1.5, 1.5, (count, 1)))
@@ -86,7 +45,9 @@ def sphere(t):
 
 def built(t, low, high):
     """The submission's tree, looked at: (boxes, first, count, order), every rule of form kept."""
-    parts = Items(Boxes(), Whole(), Whole(), Whole(), names=("boxes", "first", "count", "order"))
+    parts = Items(
+        Array((None, 2, 3)), WHOLE, WHOLE, WHOLE, names=("boxes", "first", "count", "order")
+    )
     boxes, first, count, order = t.call("build_bvh", low, high, returns=parts)
     nodes = len(boxes)
     t.require(nodes == len(first) == len(count) > 0, "boxes, first and count differ in length")

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Tolerance, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from .common import EXACT, T_MIN, Distances, lengths, same_hits, sphere, units
+from .common import EXACT, T_MIN, distances, lengths, same_hits, sphere
 
 check = checks_for(calls=("hit_sphere",), tolerance=EXACT)
 
@@ -12,13 +13,13 @@ FAR = Tolerance(1e-5, "right ones are off by 1e-8, the quadratic formula by 1e-3
 
 def hit(t, origins, directions, center, radius):
     return t.call(
-        "hit_sphere", origins, directions, center, radius, returns=Distances(len(origins))
+        "hit_sphere", origins, directions, center, radius, returns=distances(len(origins))
     )
 
 
 def rays_onto(t, count, center, radius):
     """(origins, directions, right, outward normals) of rays that meet a sphere from outside."""
-    n, d = units(t, count), units(t, count)
+    n, d = unit_vectors(t.rng, count), unit_vectors(t.rng, count)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.1 * n
     d *= lengths(t, count)
     right = t.rng.uniform(0.2, 6, count)
@@ -101,8 +102,8 @@ def spheres_missed(t):
 )
 def a_sphere_far_away(t):
     """A sphere of radius 1 is met on its surface from ten million meters away as well."""
-    n = units(t, 30)
-    d = units(t, 30)
+    n = unit_vectors(t.rng, 30)
+    d = unit_vectors(t.rng, 30)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     origins = n - 1e7 * d

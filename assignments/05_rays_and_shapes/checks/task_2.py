@@ -2,14 +2,15 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from .common import EXACT, T_MIN, Distances, lengths, same_hits, units
+from .common import EXACT, T_MIN, distances, lengths, same_hits
 
 check = checks_for(calls=("hit_triangle",))
 
 
 def triangles(t, origin, direction, corners):
-    parts = Items(Distances(len(corners)), Array((len(corners), 2)), names=("t", "weights"))
+    parts = Items(distances(len(corners)), Array((len(corners), 2)), names=("t", "weights"))
     return t.call("hit_triangle", origin, direction, corners, returns=parts)
 
 
@@ -18,8 +19,11 @@ def aimed(t, count, parts, ahead):
 
     `parts` (count, 2) are the weights of b and c, `ahead` (count,) the t at which they are passed.
     """
-    origin, direction = t.rng.uniform(-2, 2, 3), units(t, 1)[0] * lengths(t, 1)[0, 0]
-    ab, ac = units(t, count) * lengths(t, count), units(t, count) * lengths(t, count)
+    origin, direction = t.rng.uniform(-2, 2, 3), unit_vectors(t.rng, 1)[0] * lengths(t, 1)[0, 0]
+    ab, ac = (
+        unit_vectors(t.rng, count) * lengths(t, count),
+        unit_vectors(t.rng, count) * lengths(t, count),
+    )
     slim = np.abs(np.cross(ab, ac) @ direction) < 0.2 * np.linalg.norm(direction)
     ab[slim] = np.roll(direction, 1) * [1, 1, -1]
     ac[slim] = np.cross(direction, ab[slim])

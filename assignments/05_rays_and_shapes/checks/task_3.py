@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from .common import EXACT, units
+from .common import EXACT
 
 check = checks_for(calls=("refract",), tolerance=EXACT)
 
@@ -21,8 +22,8 @@ def refracted(t, directions, normals, eta):
 
 def arrivals(t, count, most=1.5, inside=False):
     """(directions, normals) that make angles up to `most` with the normal."""
-    n = units(t, count)
-    s = np.cross(n, units(t, count))
+    n = unit_vectors(t.rng, count)
+    s = np.cross(n, unit_vectors(t.rng, count))
     s /= np.linalg.norm(s, axis=1, keepdims=True)
     angle = t.rng.uniform(0.05, most, (count, 1))
     return np.sin(angle) * s + (1 if inside else -1) * np.cos(angle) * n, n
@@ -86,8 +87,8 @@ def total_reflection(t):
     """Beyond the critical angle, and only there, light from inside is mirrored."""
     eta = 1.5
     critical = np.arcsin(1 / eta)
-    n = units(t, 12)
-    s = np.cross(n, units(t, 12))
+    n = unit_vectors(t.rng, 12)
+    s = np.cross(n, unit_vectors(t.rng, 12))
     s /= np.linalg.norm(s, axis=1, keepdims=True)
     more = np.array([-0.3, -1e-2, -1e-5, 1e-5, 1e-2, 0.3] * 2)
     angle = (critical + more)[:, None]

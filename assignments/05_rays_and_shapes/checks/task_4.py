@@ -3,8 +3,9 @@
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.failures import CheckFailed
+from photograd_course.grading.generators import unit_vectors
 
-from .common import CLOSE, Distances, same_hits, sphere, units
+from .common import CLOSE, distances, same_hits, sphere
 
 check = checks_for(calls=("march_sdf",))
 
@@ -70,14 +71,14 @@ def both(first, second, p_first=True):
 def marched(t, shape, origins, directions, t_max=50.0, steps=400):
     """(t, d_t, places asked for)."""
     service = Surface(shape)
-    parts = Items(Distances(len(origins)), Array((len(origins),)), names=("t", "d_t"))
+    parts = Items(distances(len(origins)), Array((len(origins),)), names=("t", "d_t"))
     got, d_t = t.call("march_sdf", service, origins, directions, t_max, steps, returns=parts)
     return got, d_t, service.asked
 
 
 def onto_ball(t, count, center, radius):
     """(origins, unit directions, right) of rays that meet a ball from outside, not grazing."""
-    n, d = units(t, count), units(t, count)
+    n, d = unit_vectors(t.rng, count), unit_vectors(t.rng, count)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.4 * n
     d /= np.linalg.norm(d, axis=1, keepdims=True)
     right = t.rng.uniform(0.3, 5, count)
@@ -86,8 +87,8 @@ def onto_ball(t, count, center, radius):
 
 def past_ball(t, count, center, radius):
     """(origins, unit directions) of rays that pass a ball at 1.05 to 2 radii."""
-    d = units(t, count)
-    s = np.cross(d, units(t, count))
+    d = unit_vectors(t.rng, count)
+    s = np.cross(d, unit_vectors(t.rng, count))
     s *= t.rng.uniform(1.05, 2, (count, 1)) * radius / np.linalg.norm(s, axis=1, keepdims=True)
     return center + s - t.rng.uniform(1, 4, (count, 1)) * d, d
 
@@ -105,8 +106,8 @@ def surfaces_are_met(t):
         center, radius = sphere(t)
         origins, directions, right = onto_ball(t, 15, center, radius)
         away = past_ball(t, 10, center, radius)
-        inside = center + 0.5 * radius * units(t, 5)
-        ahead = units(t, 5)
+        inside = center + 0.5 * radius * unit_vectors(t.rng, 5)
+        ahead = unit_vectors(t.rng, 5)
         b = np.sum((inside - center) * ahead, axis=1)
         through = -b + np.sqrt(b**2 + 0.75 * radius**2)
         everything = np.concatenate([origins, away[0], inside])
@@ -115,7 +116,7 @@ def surfaces_are_met(t):
         got, d_t, _ = marched(t, ball(center, radius), everything, ways)
         same_hits(t, got, right)
         t.require(not d_t[np.isinf(got)].any(), "d_t is zero where nothing is met")
-    normal = units(t, 1)[0]
+    normal = unit_vectors(t.rng, 1)[0]
     origins, directions = past_ball(t, 10, np.zeros(3), 1.0)
     height = float((origins @ normal).min()) - 2.5
     scene = both(ball(np.zeros(3), 1.0), wall(normal, height))
@@ -144,7 +145,7 @@ def differences(t, make, origins, directions, eps=1e-2):
 def the_derivative_of_a_hit(t):
     """d_t is what differences of t by p say: a radius, a place, a height."""
     center, radius = sphere(t)
-    by, normal = units(t, 1)[0], units(t, 1)[0]
+    by, normal = unit_vectors(t.rng, 1)[0], unit_vectors(t.rng, 1)[0]
     origins, directions, _ = onto_ball(t, 12, center, radius)
     onto = np.sum(directions * normal, axis=1)
     slanted = np.where((onto > 0)[:, None], -directions, directions)[np.abs(onto) > 0.25]

@@ -1,28 +1,12 @@
 """Task 05.6, public checks."""
 
 import numpy as np
-from photograd_course.grading import Items, checks_for
-from photograd_course.grading.failures import CheckFailed
+from photograd_course.grading import Integer, Items, Number, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from .common import EXACT, Distances, Scene, Whole, built, lengths, units
+from .common import EXACT, WHOLE, Scene, built, distances, lengths
 
 check = checks_for(calls=("traverse",), needs=("build_bvh",))
-
-
-class Distance:
-    """A float above 0, or infinity."""
-
-    def require(self, value, where):
-        if isinstance(value, bool) or not isinstance(value, float) or not value > 0:
-            raise CheckFailed(f"{where}: expected a float above 0, or infinity, got {value!r}")
-
-
-class WholeNumber:
-    """An int."""
-
-    def require(self, value, where):
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise CheckFailed(f"{where}: expected an int, got {type(value).__name__}")
 
 
 def rectangles(t, count, size=1.0, stretch=(1.0, 1.0, 1.0)):
@@ -44,7 +28,7 @@ def grow(t, scene):
 def first_met(t, scene, tree, origin, direction):
     """(t, number) of the submission."""
     scene.ray(origin, direction)
-    parts = Items(Distance(), WholeNumber(), names=("t", "number"))
+    parts = Items(Number(finite=False, above=0.0), Integer(), names=("t", "number"))
     _, first, count, order = tree
     return t.call(
         "traverse", first, count, order, scene.box, scene.meet, origin, direction, returns=parts
@@ -79,7 +63,10 @@ def the_nearest_of_all(t):
         scene = rectangles(t, count, size)
         tree = grow(t, scene)
         for k in range(10):
-            origin, direction = t.rng.uniform(-6, 6, 3), units(t, 1)[0] * lengths(t, 1)[0, 0]
+            origin, direction = (
+                t.rng.uniform(-6, 6, 3),
+                unit_vectors(t.rng, 1)[0] * lengths(t, 1)[0, 0],
+            )
             if k % 2:  # aimed at one
                 which = t.rng.integers(count)
                 target = t.rng.uniform(scene.low[which], scene.high[which])
@@ -98,7 +85,7 @@ def rays_along_axes(t):
     scene = rectangles(t, 40, 2.0)
     tree = grow(t, scene)
     for k in range(18):
-        origin, direction = t.rng.uniform(-5, 5, 3), units(t, 1)[0]
+        origin, direction = t.rng.uniform(-5, 5, 3), unit_vectors(t.rng, 1)[0]
         direction[k % 3] = 0.0
         if k % 2:
             direction[(k + 1) % 3] = 0.0
@@ -273,7 +260,7 @@ EMBREE_T = (
 def as_embree_has_it(t):
     """Your tree and triangles find what Embree finds: the triangle, and where."""
     origins, directions = ring_rays()
-    parts = Items(Distances(24), Whole(), names=("t", "number"))
+    parts = Items(distances(24), WHOLE, names=("t", "number"))
     got, numbers = t.call("trace_mesh", ring(), origins, directions, returns=parts)
     right = np.array(EMBREE)
     t.require(len(numbers) == 24, "a number for each ray")

@@ -1,11 +1,10 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from photograd_course.grading import Array, Tolerance
+from photograd_course.grading.generators import hemisphere_quadrature, upper_directions
 
 # Evidence: worst of the solution and three alternatives, against the nearest named wrong solution.
 EXACT = Tolerance(1e-10, "right ones differ by 1e-15, wrong ones by 1e-3 or more")
@@ -67,9 +66,7 @@ def hit_at(points, wo, thing):
 
 def ways(rng, n, low=0.2):
     """Unit vectors (n, 3) around +y, whose y is `low` or more."""
-    y, phi = rng.uniform(low, 1, n), rng.uniform(0, 2 * np.pi, n)
-    r = np.sqrt(1 - y * y)
-    return np.stack([r * np.cos(phi), y, r * np.sin(phi)], axis=1)
+    return upper_directions(rng, n, low, up=1)
 
 
 def corners_of(corner, u, v):
@@ -94,16 +91,6 @@ def nodes(count):
     x, w = (x + 1) / 2, w / 2
     u, v = np.meshgrid(x, x, indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1), np.outer(w, w).ravel()
-
-
-def dome(heights=40, turns=64):
-    """Directions around +y and what each speaks for of the integral with the cosine."""
-    x, w = np.polynomial.legendre.leggauss(heights)
-    root = (x + 1) / 2
-    y, phi = np.meshgrid(root**2, (np.arange(turns) + 0.5) * (2 * np.pi / turns), indexing="ij")
-    r = np.sqrt(1 - y * y)
-    wi = np.stack([r * np.cos(phi), y, r * np.sin(phi)], axis=-1).reshape(-1, 3)
-    return wi, np.repeat(root * w * root**2 * (2 * np.pi / turns), turns)
 
 
 # Judgements ---------------------------------------------------------------------------------------
@@ -165,9 +152,9 @@ def furnace(t, n=2500):
 
 def albedo(t, scene, hit):
     """The furnace integral of assignment 04, for the first place of a hit."""
-    wi, weights = dome()
+    wi, solid_angles = hemisphere_quadrature(40, 64, up=1)
     rows = {name: np.repeat(values[:1], len(wi), axis=0) for name, values in hit.items()}
-    return weights @ t.call("brdf", scene, rows, wi, returns=Array((len(wi), 3)))
+    return (solid_angles * wi[:, 1]) @ t.call("brdf", scene, rows, wi, returns=Array((len(wi), 3)))
 
 
 def all_draw(t, n, share):

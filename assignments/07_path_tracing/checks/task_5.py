@@ -2,6 +2,7 @@
 
 import numpy as np
 from photograd_course.grading import Array, checks_for
+from photograd_course.grading.generators import unit_vectors
 
 from .common import (
     EXACT,
@@ -165,8 +166,7 @@ def around_a_corner(t):
 
 def rays_inside(t, n):
     """Rays from a place in the cube into all directions."""
-    d = t.rng.normal(size=(n, 3))
-    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    d = unit_vectors(t.rng, n)
     return np.tile(t.rng.uniform(-0.5, 0.5, 3), (n, 1)), d
 
 

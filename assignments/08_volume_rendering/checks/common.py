@@ -1,7 +1,5 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance
 
@@ -32,12 +30,6 @@ def random_box(t):
     """Two opposite corners of a box that is no cube and not at the origin."""
     low = t.rng.uniform(-2.0, -0.5, 3)
     return low, low + t.rng.uniform(0.5, 3.0, 3)
-
-
-def centers(shape):
-    """Middle of every voxel of a grid (X, Y, Z), last axis fastest: (X Y Z, 3)."""
-    parts = np.meshgrid(*((np.arange(n) + 0.5) / n for n in shape), indexing="ij")
-    return np.stack([part.ravel() for part in parts], axis=1)
 
 
 def between_centers(t, shape, n):

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, checks_for
+from photograd_course.grading.generators import cell_centers
 
-from .common import EXACT, between_centers, centers
+from .common import EXACT, between_centers
 
 check = checks_for(calls=("trilinear",), tolerance=EXACT)
 
@@ -17,7 +18,7 @@ check = checks_for(calls=("trilinear",), tolerance=EXACT)
 def a_center_gives_its_voxel(t):
     """In the middle of a voxel the sample is that voxel."""
     grid = t.rng.uniform(-1.0, 1.0, (2, 5, 3, 2))
-    got = t.call("trilinear", grid, centers((2, 5, 3)), returns=Array((30, 2)))
+    got = t.call("trilinear", grid, cell_centers((2, 5, 3)), returns=Array((30, 2)))
     t.close("samples", got, grid.reshape(30, 2), reveal=True)
 
 
@@ -37,7 +38,7 @@ def products_stay_products(t):
         return np.stack([x, y, z, x * y, y * z, z * x, x * y * z], axis=1)
 
     u = between_centers(t, shape, 50)
-    grid = fields(centers(shape)).reshape(*shape, 7)
+    grid = fields(cell_centers(shape)).reshape(*shape, 7)
     got = t.call("trilinear", grid, u, returns=Array((50, 7)))
     t.close("samples", got, fields(u), reveal=True)
 

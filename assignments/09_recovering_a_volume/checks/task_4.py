@@ -2,7 +2,7 @@
 
 import numpy as np
 from photograd_course.grading import Tolerance, checks_for
-from photograd_course.grading.adjoint_gate import require_gradients
+from photograd_course.grading.adjoint_gate import agrees_with_finite_differences
 
 from .common import EXACT, GATE, rough
 
@@ -50,7 +50,9 @@ def the_slope_of_roughness_agrees_with_differences(t):
         def forward(point, eps=eps):
             return np.array(rough(t, point["grid"], eps)[0])
 
-        require_gradients(t, {"grid": d_grid}, forward, {"grid": grid}, np.ones(()), GATE)
+        agrees_with_finite_differences(
+            t, {"grid": d_grid}, forward, {"grid": grid}, np.ones(()), GATE
+        )
 
 
 @check(

@@ -1,27 +1,10 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Tolerance
 from photograd_course.grading.failures import CheckFailed
 
 FAITHFUL = Tolerance(1e-12, "numbers that are handed on unchanged")
-
-
-class Rows:
-    """An array (any number, width) of int64, or (any number,) without a width."""
-
-    def __init__(self, width=0):
-        self.width = width
-
-    def require(self, value, where):
-        shape = f"(..., {self.width})" if self.width else "(...,)"
-        fits = isinstance(value, np.ndarray) and value.dtype == np.int64
-        fits = fits and value.shape[1:] == ((self.width,) if self.width else ())
-        if not fits or value.ndim == 0:
-            got = f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else type(value)
-            raise CheckFailed(f"{where}: expected an int64 array of shape {shape}, got {got}")
 
 
 def same_counts(t, what, got, right, hint=""):

@@ -2,7 +2,11 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
-from photograd_course.grading.adjoint_gate import require_gradients, require_zero_for_zero
+from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
+    is_the_transpose,
+    require_zero_for_zero,
+)
 
 # Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
 # all named wrong solutions.
@@ -33,7 +37,7 @@ def back(t, count, row, weight, g):
     hint="handout, equation (11): the same weights as forwards, from sample to voxel",
     sole="the definition of an adjoint",
 )
-def is_the_transpose(t):
+def the_adjoint_is_the_transpose(t):
     """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice add up."""
     # The weights of a sample sum to 1: a voxel that is all eight corners gets the whole g.
     g = np.repeat(t.rng.uniform(0.5, 0.9, (5, 1)), 2, axis=1)
@@ -52,13 +56,7 @@ def is_the_transpose(t):
         x, g = t.rng.uniform(-1, 1, (count, channels)), t.rng.uniform(-1, 1, (samples, channels))
         d_values = back(t, count, row, weight, g)
         forth = t.call("sample_sparse", x, row, weight, returns=Array((samples, channels)))
-        size = float(np.linalg.norm(forth) * np.linalg.norm(g))
-        t.close(
-            "<x, S* g>",
-            np.vdot(x, d_values),
-            np.vdot(forth, g),
-            Tolerance(EXACT.relative, EXACT.evidence, floor=size),
-        )
+        is_the_transpose(t, "<x, S* g>", x, forth, g, d_values)
     require_zero_for_zero(t, {"values": back(t, count, row, weight, 0 * g)})
 
 
@@ -109,4 +107,4 @@ def the_picture_agrees_with_differences(t):
 
     point = {"color": values[:, :3], "sigma": values[:, 3]}
     slopes = {"color": got[1][:, :3], "sigma": got[1][:, 3]}
-    require_gradients(t, slopes, forward, point, np.asarray(1.0), GATE)
+    agrees_with_finite_differences(t, slopes, forward, point, np.asarray(1.0), GATE)

@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance, checks_for
 
-from .common import EARLIER, Rows, looking, lump, same_voxels
+from .common import EARLIER, looking, lump, same_voxels
 
 check = checks_for(calls=("prune_and_dilate",))
 
@@ -17,7 +17,9 @@ def voxels_in(t, n, count):
 
 
 def pruned(t, n, voxels, row, share, threshold, steps):
-    return t.call("prune_and_dilate", n, voxels, row, share, threshold, steps, returns=Rows(3))
+    return t.call(
+        "prune_and_dilate", n, voxels, row, share, threshold, steps, returns=Array((None, 3), "i8")
+    )
 
 
 def grown(t, n, voxels, steps):

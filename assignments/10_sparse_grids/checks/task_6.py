@@ -4,7 +4,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
 from photograd_course.grading.failures import CheckFailed, StudentFailure
 
-from .common import EARLIER, FAITHFUL, Rows, looking, lump, recognized, same_voxels
+from .common import EARLIER, FAITHFUL, looking, lump, recognized, same_voxels
 
 CHAINED = Tolerance(1e-7, "right ones differ by 1e-12, wrong ones by 1e-3 or more")
 STEPS = (*EARLIER, "sample_sparse_adjoint")
@@ -20,7 +20,7 @@ def fitted(t, *given, function="fit_sparse"):
         def require(self, value, where):
             if not isinstance(value, list) or len(value) != 3:
                 raise CheckFailed(f"{where}: expected a tuple of 3: voxels, values, losses")
-            Rows(3).require(value[0], f"{where}, voxels")
+            Array((None, 3), "i8").require(value[0], f"{where}, voxels")
             Array((len(value[0]), 4)).require(value[1], f"{where}, values")
             Array((rounds * steps,)).require(value[2], f"{where}, losses")
 
@@ -85,7 +85,7 @@ def the_first_steps(t):
 
 def next_start(t, n, voxels, values, rays, threshold, grow):
     """(voxels, values, kept) that a round after these begins with; kept: those there before."""
-    parts = Items(Rows(3), Rows(), names=("voxels", "rows"))
+    parts = Items(Array((None, 3), "i8"), Array((None,), "i8"), names=("voxels", "rows"))
     following, rows = t.call(
         "adapters.next_start", n, voxels, values, rays, threshold, grow, returns=parts
     )

@@ -1,7 +1,5 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Tolerance
 
@@ -11,20 +9,6 @@ EXACT = Tolerance(
     1e-11,
     "right ones differ by at most 3e-15, the nearest wrong one (d_coefficients_of_all) by 0.04",
 )
-
-
-def unit(rng, n):
-    """(n, 3), uniform on the sphere."""
-    d = rng.normal(size=(n, 3))
-    return d / np.linalg.norm(d, axis=1, keepdims=True)
-
-
-def turn(rng):
-    """A rotation (3, 3) about any axis."""
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    q[:, 0] *= np.sign(np.linalg.det(q))
-    return q
 
 
 def sphere(degree, caps=False):

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Tolerance, checks_for
+from photograd_course.grading.generators import random_rotation, unit_vectors
 
-from .common import EXACT, band, basis, sphere, turn, unit
+from .common import EXACT, band, basis, sphere
 
 check = checks_for(calls=("sh_basis",))
 
@@ -21,7 +22,7 @@ ORTHONORMAL = Tolerance(
 )
 def the_first_four(t):
     """Degree 0 is 0.2821 everywhere; degree 1 is 0.4886 times (-y, z, -x)."""
-    d = unit(t.rng, 6)
+    d = unit_vectors(t.rng, 6)
     t.close("degree 0", basis(t, d, 0), np.full((6, 1), 0.5 / np.sqrt(np.pi)), reveal=True)
     expected = np.sqrt(3 / (4 * np.pi)) * d[:, [1, 2, 0]] * [-1, 1, -1]
     t.close("degree 1", basis(t, d, 1)[:, 1:], expected, reveal=True)
@@ -36,7 +37,7 @@ def the_first_four(t):
 )
 def harmonics_of_a_degree_add_up(t):
     """Products of one degree's harmonics at two directions depend on the angle between them."""
-    a, b = unit(t.rng, 20), unit(t.rng, 20)
+    a, b = unit_vectors(t.rng, 20), unit_vectors(t.rng, 20)
     Ya, Yb = basis(t, a, 4), basis(t, b, 4)
     for ell in range(5):
         same = np.sum(Ya[:, band(ell)] ** 2, axis=1)
@@ -64,7 +65,7 @@ def harmonics_of_a_degree_add_up(t):
 def harmonics_are_orthonormal(t):
     """Under a quadrature that is exact to degree 8, all 25 are orthonormal."""
     d, weights = sphere(8)
-    Y = basis(t, d @ turn(t.rng), 4)
+    Y = basis(t, d @ random_rotation(t.rng), 4)
     t.close("integrals of products", Y.T @ (weights[:, None] * Y), np.eye(25))
 
 

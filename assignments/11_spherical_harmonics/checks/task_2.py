@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Tolerance, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from .common import EXACT, basis, sphere, unit
+from .common import EXACT, basis, sphere
 
 check = checks_for(calls=("sh_project",), needs=("sh_basis",), tolerance=EXACT)
 
@@ -34,7 +35,7 @@ def coefficients_come_back(t):
 def what_is_left_is_orthogonal(t):
     """What a projection leaves over has no part along any harmonic: the best that can be done."""
     d, weights = sphere(12)
-    f = np.exp(3 * d @ unit(t.rng, 2).T)
+    f = np.exp(3 * d @ unit_vectors(t.rng, 2).T)
     got = t.call("sh_project", d, weights, f, 2, returns=Array((9, 2)))
     Y = basis(t, d, 2)
     left = Y.T @ (weights[:, None] * (f - Y @ got))

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, checks_for
+from photograd_course.grading.generators import random_rotation, unit_vectors
 
-from .common import EXACT, band, basis, turn, unit
+from .common import EXACT, band, basis
 
 check = checks_for(calls=("sh_rotate",), needs=("sh_basis", "sh_project"), tolerance=EXACT)
 
@@ -25,8 +26,8 @@ def a_turned_function_has_moved(t):
     about_z = np.array(
         [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]]
     )
-    d = unit(t.rng, 12)
-    for degree, R in ((1, about_z), (2, turn(t.rng)), (4, turn(t.rng))):
+    d = unit_vectors(t.rng, 12)
+    for degree, R in ((1, about_z), (2, random_rotation(t.rng)), (4, random_rotation(t.rng))):
         c = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2))
         there = basis(t, d @ R.T, degree) @ rotated(t, c, R)
         t.close(f"values, degree {degree}", there, basis(t, d, degree) @ c)
@@ -41,7 +42,7 @@ def a_turned_function_has_moved(t):
 def turns_compose(t):
     """Two turns are one; no turn changes the length of any degree's coefficients."""
     c = t.rng.uniform(-1.0, 1.0, (16, 3))
-    first, second = turn(t.rng), turn(t.rng)
+    first, second = random_rotation(t.rng), random_rotation(t.rng)
     once = rotated(t, c, first)
     t.close("both turns", rotated(t, once, second), rotated(t, c, second @ first))
     for ell in range(4):

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, checks_for
+from photograd_course.grading.generators import random_rotation, unit_vectors
 
-from .common import EXACT, basis, sphere, turn, unit
+from .common import EXACT, basis, sphere
 
 check = checks_for(calls=("probe_irradiance",), needs=("sh_basis",), tolerance=EXACT)
 
@@ -24,7 +25,12 @@ def a_constant_sky(t):
     probes = np.zeros((3, 2, 4, 9, 1))
     probes[..., 0, :] = np.sqrt(4 * np.pi)
     p = t.rng.uniform(-0.5, 3.5, (20, 3))
-    t.close("irradiance", lit(t, probes, p, unit(t.rng, 20)), np.full((20, 1), np.pi), reveal=True)
+    t.close(
+        "irradiance",
+        lit(t, probes, p, unit_vectors(t.rng, 20)),
+        np.full((20, 1), np.pi),
+        reveal=True,
+    )
 
 
 @check(
@@ -38,7 +44,7 @@ def irradiance_is_the_integral(t):
     half, weights = sphere(8, caps=True)
     for degree in (1, 2, 4):
         c = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2))
-        probes, turns = c[None, None, None], [turn(t.rng) for _ in range(5)]
+        probes, turns = c[None, None, None], [random_rotation(t.rng) for _ in range(5)]
         expected = [(weights * half[:, 2]) @ basis(t, half @ R.T, degree) @ c for R in turns]
         normals = np.stack([R[:, 2] for R in turns])
         got = lit(t, probes, t.rng.uniform(-1.0, 1.0, (5, 3)), normals)
@@ -57,7 +63,7 @@ def an_even_change_is_blended_exactly(t):
     start, slopes = t.rng.uniform(-1.0, 1.0, (9, 2)), t.rng.uniform(-1.0, 1.0, (3, 9, 2))
     cells = np.stack(np.indices(shape), axis=-1)
     probes = start + np.einsum("xyzi,ikc->xyzkc", cells, slopes)
-    p, n = t.rng.uniform(-0.5, 3.5, (15, 3)), unit(t.rng, 15)
+    p, n = t.rng.uniform(-0.5, 3.5, (15, 3)), unit_vectors(t.rng, 15)
     inside = np.clip(p, 0, np.array(shape) - 1)
     alone = [start + np.einsum("i,ikc->kc", place, slopes) for place in inside]
     expected = [

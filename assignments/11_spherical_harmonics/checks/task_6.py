@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
+from photograd_course.grading.generators import random_rotation, unit_vectors
 
-from .common import EXACT, turn, unit
+from .common import EXACT
 
 CHAINED = Tolerance(
     1e-7, "right ones differ by at most 4e-16, the nearest wrong one (density_first) by 0.017"
@@ -15,11 +16,13 @@ def photographs(rng, views, pixels, away=3.2, view_angle=0.75):
     height = 1 - (np.arange(views) + 0.5) * 2 / views
     phi = np.arange(views) * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - height**2)
-    places = np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1) @ turn(rng)
+    places = np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1) @ random_rotation(
+        rng
+    )
     tangent = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * np.tan(view_angle / 2)
     origins, directions = [], []
     for place in places:
-        right = np.cross(place, unit(rng, 1)[0])
+        right = np.cross(place, unit_vectors(rng, 1)[0])
         right /= np.linalg.norm(right)
         down = np.cross(place, right)
         d = -place + (tangent[:, None, None] * down + tangent[None, :, None] * right)

@@ -1,9 +1,8 @@
 """What the checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 from photograd_course.grading import Array, Tolerance
+from photograd_course.grading.generators import random_rotation
 
 # Evidence: worst of the solution and three alternatives, against the nearest of all named wrong
 # solutions.
@@ -16,17 +15,9 @@ GATE = Tolerance(
 SCENE = ("means", "log_scales", "quats", "opacity_logits", "colors")
 
 
-def turned(rng):
-    """A rotation (3, 3) about any axis."""
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    q[:, 0] *= np.sign(np.linalg.det(q))
-    return q
-
-
 def some_camera(rng):
     """A camera anywhere, whose pictures are not square."""
-    pose = np.concatenate([turned(rng), rng.normal(size=(3, 1))], axis=1)
+    pose = np.concatenate([random_rotation(rng), rng.normal(size=(3, 1))], axis=1)
     return {
         "camera_from_world": pose,
         "focal": np.array([18.0, 22.0]),

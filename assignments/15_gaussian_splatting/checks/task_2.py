@@ -3,8 +3,8 @@
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
     random_cotangent,
-    require_gradients,
     require_zero_for_zero,
 )
 
@@ -135,7 +135,7 @@ def projection_gate(t, points, camera, g):
         return np.concatenate([mean2d, cov2d], axis=1)
 
     found = {NINE: folded(d_cov), "means": d_means}
-    require_gradients(t, found, forward, {"means": means, NINE: six}, g, GATE)
+    agrees_with_finite_differences(t, found, forward, {"means": means, NINE: six}, g, GATE)
 
 
 @check(

@@ -3,8 +3,8 @@
 import numpy as np
 from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
     random_cotangent,
-    require_gradients,
     require_zero_for_zero,
 )
 
@@ -123,7 +123,9 @@ def alpha_agrees_with_differences(t):
         return taken(t, point["mean2d"], point["cov2d"], point["opacity_logits"], pixels)
 
     found = {"opacity_logits": d_o, "mean2d": d_m, "cov2d": d_s}
-    require_gradients(t, found, forward, {"mean2d": m, "cov2d": s, "opacity_logits": o}, g, GATE)
+    agrees_with_finite_differences(
+        t, found, forward, {"mean2d": m, "cov2d": s, "opacity_logits": o}, g, GATE
+    )
     names = ("mean2d", "cov2d", "opacity_logits", "pull")
     require_zero_for_zero(t, dict(zip(names, taken_back(t, m, s, o, pixels, 0 * g), strict=True)))
 

@@ -3,8 +3,8 @@
 import numpy as np
 from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
     random_cotangent,
-    require_gradients,
     require_zero_for_zero,
 )
 
@@ -98,6 +98,8 @@ def blending_agrees_with_differences(t):
         return blended(t, point["alpha"], point["colors"], z, point["background"])
 
     found = {"background": d_b, "colors": d_c, "alpha": d_a}
-    require_gradients(t, found, forward, {"alpha": a, "colors": c, "background": b}, g, GATE)
+    agrees_with_finite_differences(
+        t, found, forward, {"alpha": a, "colors": c, "background": b}, g, GATE
+    )
     names = ("alpha", "colors", "background")
     require_zero_for_zero(t, dict(zip(names, blended_back(t, a, c, z, b, 0 * g), strict=True)))

@@ -3,8 +3,8 @@
 import numpy as np
 from photograd_course.grading import Array, Record, checks_for
 from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
     random_cotangent,
-    require_gradients,
     require_zero_for_zero,
 )
 
@@ -80,7 +80,7 @@ def the_chain_agrees_with_differences(t):
         return shown(t, some, camera, pixels, point["background"])
 
     found = {name: got[name] for name in (*reversed(SCENE), "background")}
-    require_gradients(t, found, forward, {**scene, "background": b}, g, GATE)
+    agrees_with_finite_differences(t, found, forward, {**scene, "background": b}, g, GATE)
     none = shown_back(t, scene, camera, pixels, b, 0 * g)
     require_zero_for_zero(t, none)
 

@@ -1,13 +1,13 @@
 """What the hidden checks of several tasks share."""
 
-from __future__ import annotations
+from photograd_course.grading.generators import upper_directions
 
-from ..common import directions, material
+from ..common import material
 
 
 def pairs(t, n):
     """Pairs of directions and their roughness."""
-    return directions(t.rng, n), directions(t.rng, n), t.rng.uniform(0.3, 1.0, n)
+    return upper_directions(t.rng, n), upper_directions(t.rng, n), t.rng.uniform(0.3, 1.0, n)
 
 
 def painted(t, n):

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Subject, check
+from photograd_course.grading.generators import upper_directions
 
-from ..common import SHARP, directions, lobes
+from ..common import SHARP, lobes
 from .common import pairs
 
 
@@ -18,7 +19,7 @@ from .common import pairs
 )
 def lobes_anywhere(t):
     """The lobe is right anywhere, and where it is sharp."""
-    wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
+    wo, wi = upper_directions(t.rng, 60, 0.02), upper_directions(t.rng, 60, 0.02)
     r = t.rng.uniform(0.3, 1.0, 60)
     got = t.call("ggx_lobe", wo, wi, r, returns=Array((60,)))
     t.close("lobe", got, t.reference.ggx_lobe(wo, wi, r))

@@ -1,8 +1,9 @@
 """Task 04.3, hidden checks."""
 
 from photograd_course.grading import Array, Subject, check
+from photograd_course.grading.generators import upper_directions
 
-from ..common import SHARP, directions
+from ..common import SHARP
 from .common import pairs
 
 
@@ -18,7 +19,7 @@ from .common import pairs
 )
 def densities_anywhere(t):
     """The density is right anywhere."""
-    wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
+    wo, wi = upper_directions(t.rng, 60, 0.02), upper_directions(t.rng, 60, 0.02)
     r = t.rng.uniform(0.1, 1.0, 60)
     got = t.call("ggx_pdf", wo, wi, r, returns=Array((60,)))
     t.close("density", got, t.reference.ggx_pdf(wo, wi, r))

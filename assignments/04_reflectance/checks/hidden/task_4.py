@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Subject, check
+from photograd_course.grading.generators import upper_directions
 
-from ..common import EXACT, directions, turned, viewer
+from ..common import EXACT, turned, viewer
 from ..task_4 import cells, chi_square, drawn, twice
 
 
@@ -16,7 +17,11 @@ from ..task_4 import cells, chi_square, drawn, twice
     battery=[
         Subject(
             "sample_ggx",
-            lambda t, n: (directions(t.rng, n), t.rng.uniform(0.3, 1.0, n), t.rng.random((n, 2))),
+            lambda t, n: (
+                upper_directions(t.rng, n),
+                t.rng.uniform(0.3, 1.0, n),
+                t.rng.random((n, 2)),
+            ),
             lambda n: Array((n, 3)),
             rows=(0, 1, 2),
             tolerance=EXACT,

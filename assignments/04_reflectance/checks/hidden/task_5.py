@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Subject, check
+from photograd_course.grading.generators import upper_directions
 
-from ..common import EXACT, directions, material, shaded
+from ..common import EXACT, material, shaded
 from .common import painted
 
 
@@ -19,7 +20,7 @@ from .common import painted
 )
 def materials_anywhere(t):
     """Random materials, the ends of all parameters among them."""
-    wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
+    wo, wi = upper_directions(t.rng, 60, 0.02), upper_directions(t.rng, 60, 0.02)
     color, m, r = material(t.rng, 60)
     m[:10], m[10:20], color[20:30] = 0.0, 1.0, np.eye(3)[t.rng.integers(0, 3, 10)]
     t.close("f", shaded(t, wo, wi, color, m, r), t.reference.gltf(wo, wi, color, m, r))

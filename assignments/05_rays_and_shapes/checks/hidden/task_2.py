@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
 
-from ..common import EXACT, Distances, same_hits
+from ..common import EXACT, distances, same_hits
 from ..task_2 import aimed, inner_parts, outer_parts, triangles
 
 
@@ -21,7 +21,7 @@ def crossed(t, n):
     tolerance=EXACT,
     sole="the same mistakes at triangles that are not known beforehand",
     battery=[
-        Subject("hit_triangle", crossed, lambda n: Items(Distances(n), Array((n, 2))), rows=(2,))
+        Subject("hit_triangle", crossed, lambda n: Items(distances(n), Array((n, 2))), rows=(2,))
     ],
 )
 def triangles_at_random(t):

@@ -2,8 +2,9 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading.generators import unit_vectors
 
-from ..common import Distances, same_hits, sphere, units
+from ..common import distances, same_hits, sphere
 from ..task_4 import MARCHED, SLOPES, Surface, ball, both, marched, onto_ball, past_ball, wall
 
 
@@ -24,7 +25,7 @@ def approached(t, n):
         Subject(
             "march_sdf",
             approached,
-            lambda n: Items(Distances(n), Array((n,))),
+            lambda n: Items(distances(n), Array((n,))),
             rows=(1, 2),
             tolerance=SLOPES,
         )
@@ -34,13 +35,13 @@ def marches_at_random(t):
     """Random scenes: what is met, the derivative, and how many places are asked for."""
     for p_first in (True, False):
         center, radius = sphere(t)
-        normal = units(t, 1)[0]
+        normal = unit_vectors(t.rng, 1)[0]
         scene = both(ball(center, radius), wall(normal, -6.0), p_first)
         origins, directions, _ = onto_ball(t, 15, center, radius)
         more = past_ball(t, 15, center, radius)
-        inside = center + 0.5 * radius * units(t, 5)
+        inside = center + 0.5 * radius * unit_vectors(t.rng, 5)
         origins = np.concatenate([origins, more[0], inside])
-        directions = np.concatenate([directions, more[1], units(t, 5)])
+        directions = np.concatenate([directions, more[1], unit_vectors(t.rng, 5)])
         for t_max, steps in ((30.0, 400), (6.0, 12)):
             service = Surface(scene)
             right, slopes = t.reference.march_sdf(service, origins, directions, t_max, steps)

@@ -1,9 +1,10 @@
 """Task 05.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading.generators import unit_vectors
 
-from ..common import EXACT, Boxes, Scene, Whole, built, units
+from ..common import EXACT, WHOLE, Scene, built
 from ..task_5 import held
 
 
@@ -24,7 +25,7 @@ def stacked(t, n):
         Subject(
             "build_bvh",
             stacked,
-            lambda _: Items(Boxes(), Whole(), Whole(), Whole()),
+            lambda _: Items(Array((None, 2, 3)), WHOLE, WHOLE, WHOLE),
             has_right=False,
         )
     ],
@@ -44,7 +45,7 @@ def trees_at_random(t):
         for _ in range(24):
             scene = Scene(low, high)
             scene.boxes = tree[0]
-            scene.ray(t.rng.uniform(-8, 8, 3), units(t, 1)[0])
+            scene.ray(t.rng.uniform(-8, 8, 3), unit_vectors(t.rng, 1)[0])
             t.reference.traverse(
                 tree[1],
                 tree[2],

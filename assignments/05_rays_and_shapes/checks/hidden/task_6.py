@@ -1,9 +1,9 @@
 """Task 05.6, hidden checks."""
 
-from photograd_course.grading import Items, Subject, check
+from photograd_course.grading import Integer, Items, Number, Subject, check
 
 from ..common import EXACT
-from ..task_6 import Distance, WholeNumber, first_met, rectangles, right_answer
+from ..task_6 import first_met, rectangles, right_answer
 
 
 def searched(t, n):
@@ -24,7 +24,12 @@ def searched(t, n):
     tolerance=EXACT,
     sole="the same mistakes in scenes that are not known beforehand",
     battery=[
-        Subject("traverse", searched, lambda _: Items(Distance(), WholeNumber()), sizes=(1, 2, 64))
+        Subject(
+            "traverse",
+            searched,
+            lambda _: Items(Number(finite=False, above=0.0), Integer()),
+            sizes=(1, 2, 64),
+        )
     ],
 )
 def scenes_at_random(t):

@@ -1,7 +1,5 @@
 """What the hidden checks of several tasks share."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..common import scene_of

@@ -1,7 +1,5 @@
 """What the hidden checks of several tasks share."""
 
-from __future__ import annotations
-
 from photograd_course.grading import Tolerance
 
 SUMS = Tolerance(

@@ -1,18 +1,10 @@
 """Task 09.2, hidden checks."""
 
-import numpy as np
 from photograd_course.grading import Subject, check
+from photograd_course.grading.generators import random_rotation
 
 from ..common import EXACT, batch, random_views
 from ..task_2 import unit
-
-
-def turned(rng):
-    """A rotation (3, 3) about any axis."""
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    q[:, 0] *= np.sign(np.linalg.det(q))
-    return q
 
 
 @check(
@@ -36,7 +28,7 @@ def rays_of_random_cameras(t):
     """Rays and colors are right for random cameras and pixels."""
     for count, rows, columns in ((4, 3, 6), (1, 7, 2), (2, 1, 1)):
         views = random_views(t, count, rows, columns)
-        views["world_from_camera"][:, :3, :3] = [turned(t.rng) for _ in range(count)]
+        views["world_from_camera"][:, :3, :3] = [random_rotation(t.rng) for _ in range(count)]
         chosen = t.rng.integers(0, count * rows * columns, 11)
         got = t.call("ray_batch", views, chosen, returns=batch(11))
         right = t.reference.ray_batch(views, chosen)

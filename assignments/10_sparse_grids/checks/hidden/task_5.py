@@ -1,8 +1,8 @@
 """Task 10.5, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Array, Subject, check
 
-from ..common import FAITHFUL, Rows, same_voxels
+from ..common import FAITHFUL, same_voxels
 from ..task_5 import pruned, some_shares, voxels_in
 
 
@@ -18,7 +18,9 @@ def shared(t, n):
     calls=("prune_and_dilate",),
     visibility="hidden",
     sole="the same mistakes at voxels that are not known beforehand",
-    battery=[Subject("prune_and_dilate", shared, lambda _: Rows(3), tolerance=FAITHFUL)],
+    battery=[
+        Subject("prune_and_dilate", shared, lambda _: Array((None, 3), "i8"), tolerance=FAITHFUL)
+    ],
 )
 def random_voxels_are_pruned_and_grow(t):
     """Random voxels with random shares are pruned and grow as they should."""

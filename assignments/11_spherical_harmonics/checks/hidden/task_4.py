@@ -1,8 +1,9 @@
 """Task 11.4, hidden checks."""
 
 from photograd_course.grading import Array, Subject, check
+from photograd_course.grading.generators import random_rotation
 
-from ..common import EXACT, turn
+from ..common import EXACT
 from ..task_4 import rotated
 
 
@@ -17,7 +18,7 @@ from ..task_4 import rotated
     battery=[
         Subject(
             "sh_rotate",
-            lambda t, n: (t.rng.uniform(-1.0, 1.0, (9, n)), turn(t.rng)),
+            lambda t, n: (t.rng.uniform(-1.0, 1.0, (9, n)), random_rotation(t.rng)),
             lambda n: Array((9, n)),
         )
     ],
@@ -25,5 +26,5 @@ from ..task_4 import rotated
 def random_turns(t):
     """Random coefficients are turned rightly, for each degree."""
     for degree in range(5):
-        c, R = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2)), turn(t.rng)
+        c, R = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2)), random_rotation(t.rng)
         t.close(f"degree {degree}", rotated(t, c, R), t.reference.sh_rotate(c, R))

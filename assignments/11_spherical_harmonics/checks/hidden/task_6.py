@@ -2,8 +2,8 @@
 
 import numpy as np
 from photograd_course.grading import Array, Items, Subject, checks_for
+from photograd_course.grading.generators import unit_vectors
 
-from ..common import unit
 from ..task_6 import CHAINED, EARLIER, fitted, photographs, small_case
 
 check = checks_for(calls=("fit_plenoxels",), needs=EARLIER, visibility="hidden")
@@ -35,8 +35,8 @@ def fits_of_random_scenes(t):
 def glossy_scene(t, n):
     """Two soft balls (density, coefficients) on a grid of n^3, shiny where light is mirrored."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    middle = t.rng.uniform(0.2, 0.4) * unit(t.rng, 1)[0]
-    light = unit(t.rng, 1)[0]
+    middle = t.rng.uniform(0.2, 0.4) * unit_vectors(t.rng, 1)[0]
+    light = unit_vectors(t.rng, 1)[0]
     outward = [x - middle, x + 1.4 * middle]
     inside = [
         np.clip((r - np.linalg.norm(each, axis=-1)) * n / 3 + 0.5, 0, 1)
