@@ -10,7 +10,8 @@ Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 def unit_vectors(rng: np.random.Generator, count: int) -> Array:
     """Vectors (count, 3) of length 1, uniform on the sphere."""
     v = rng.normal(size=(count, 3))
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
+    unit: Array = v / np.linalg.norm(v, axis=1, keepdims=True)
+    return unit
 
 
 def upper_directions(rng: np.random.Generator, count: int, low: float = 0.1, up: int = 2) -> Array:
