@@ -2,27 +2,68 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 from collections import deque
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from photograd_course.suggest import choose_from
 
 from photograd import _descend as descent
 from photograd._fit_options import FitOptions
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fields import fittable
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def options_for(representation: str, **given: Any) -> FitOptions:
     """The options of a representation: its defaults, but for what is given and not None.
 
-    Raises RangeError for a value without meaning, TypeError for a name that is no option.
+    Args:
+        representation: its name.
+        given: fields of `FitOptions`; None leaves the default.
+
+    Raises:
+        DtypeError: a name that is no option; names the nearest.
+        RangeError: a value without meaning.
     """
+    known_options = {field.name for field in fields(FitOptions)} - {"representation"}
+    for name in sorted(set(given) - known_options):
+        expected, remedy = "an option of FitOptions", choose_from(name, known_options)
+        raise DtypeError(message("fit", name, expected, "an unknown name", remedy))
     chosen = {name: value for name, value in given.items() if value is not None}
     known = fittable().get(representation)
     defaults = {} if known is None else known.fit_defaults
     return FitOptions(**{"representation": representation, **defaults, **chosen})
+
+
+def list_options(function: Function) -> Function:
+    """Decorator: name the fields of `FitOptions` in a signature and docstring with `**options`.
+
+    The docstring's entry `options` is followed by one for each field.
+    """
+    own: Any = function
+    signature = inspect.signature(function)
+    kept = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+    listed = [
+        inspect.Parameter(
+            f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default, annotation=f.type
+        )
+        for f in fields(FitOptions)
+        if f.name != "representation"
+    ]
+    own.__signature__ = signature.replace(parameters=[*kept, *listed])
+    described, docstring = inspect.getdoc(FitOptions), inspect.getdoc(function)
+    if described and docstring:  # both are None under python -OO
+        entries = re.split(r"\n(?=    \w)", described.partition("Attributes:")[2])
+        text = "\n".join(entry for entry in entries if entry and "representation:" not in entry)
+        args, _, rest = docstring.partition("\n\nReturns:")
+        own.__doc__ = f"{args}\n{text}\n\nReturns:{rest}"
+    return function
 
 
 def users_of(option: str) -> tuple[str, ...]:

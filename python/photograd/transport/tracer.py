@@ -13,6 +13,7 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
+from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
@@ -61,12 +62,17 @@ class PathTracer:
     ) -> None:
         """Build the hierarchy.
 
-        With `allow_incomplete`, incomplete derivatives are handed out: the part with paths fixed.
+        Args:
+            scene: from `read_scene`, `read_model` or `builtin_scene`.
+            dtype: of the parameters and of the computation, float32 or float64.
+            allow_incomplete: hand out incomplete derivatives, too: the part with paths fixed.
 
         Raises:
-            DtypeError: dtype is neither float32 nor float64.
+            DtypeError: no `Scene`, or dtype is neither float32 nor float64.
             SceneError: geometry that cannot be traced, or a light without area.
         """
+        remedy = "read_scene and read_model read files"
+        require_instance("PathTracer", "scene", scene, Scene, remedy)
         self.dtype = np.dtype(dtype)
         if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
             expected = "float32 or float64"
