@@ -42,6 +42,7 @@ autodoc_type_aliases = {
 }
 napoleon_numpy_docstring = False
 napoleon_custom_sections = [("Fields", "params_style")]
+napoleon_use_param = False  # which would describe "spp, seed" once for each
 napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
@@ -66,9 +67,9 @@ register_plugin("pybtex.style.formatting", "keys", KeyStyle)
 
 
 def _edit_docstring(
-    _app: Sphinx, _what: str, _name: str, _thing: object, _options: object, lines: list[str]
+    _app: Sphinx, what: str, _name: str, _thing: object, _options: object, lines: list[str]
 ) -> None:
-    lines[:] = docstrings.to_rst(lines)
+    lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
 # How autodoc writes an alias inside of a union.

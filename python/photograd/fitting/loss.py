@@ -14,7 +14,7 @@ The loss of pixels that are sampled at random:
 A learned background stands behind the photograph too: both terms count.
 
 The loss of a whole picture, in display values; structural similarity and its adjoint are in the
-core, since a fit needs them at every step (texture/ssim.h):
+core, since a fit needs them at every step (cpp/photograd/texture/ssim.h):
 
     image = color + (1 - opacity) background        truth = photograph + (1 - alpha) background
     loss  = (1 - w) mean |image - truth| + w (1 - SSIM(image, truth))       [Kerbl2023, eq. 7]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import re
 from collections import deque
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
@@ -42,27 +41,20 @@ def options_for(representation: str, **given: Any) -> FitOptions:
 
 
 def list_options(function: Function) -> Function:
-    """Decorator: name the fields of `FitOptions` in a signature and docstring with `**options`.
+    """Decorator: describe the fields of `FitOptions` in the docstring of a function.
 
-    The docstring's entry `options` is followed by one for each field.
+    Its entry `options`, the last of its arguments, is followed by one for each field.
     """
     own: Any = function
-    signature = inspect.signature(function)
-    kept = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-    listed = [
-        inspect.Parameter(
-            f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default, annotation=f.type
-        )
-        for f in fields(FitOptions)
-        if f.name != "representation"
-    ]
-    own.__signature__ = signature.replace(parameters=[*kept, *listed])
     described, docstring = inspect.getdoc(FitOptions), inspect.getdoc(function)
     if described and docstring:  # both are None under python -OO
-        entries = re.split(r"\n(?=    \w)", described.partition("Attributes:")[2])
-        text = "\n".join(entry for entry in entries if entry and "representation:" not in entry)
+        text = described.partition("Attributes:")[2] + "\n"
+        for field in fields(FitOptions):
+            kind = f"{field.type}, default {field.default!r}"
+            text = text.replace(f"\n    {field.name}:", f"\n    {field.name} ({kind}):")
+        text = text[text.index("\n    resolution") :].rstrip()
         args, _, rest = docstring.partition("\n\nReturns:")
-        own.__doc__ = f"{args}\n{text}\n\nReturns:{rest}"
+        own.__doc__ = f"{args}{text}\n\nReturns:{rest}"
     return function
 
 

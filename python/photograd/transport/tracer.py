@@ -1,7 +1,7 @@
 """Path tracing of a scene, and the derivatives of its picture by everything that is a number.
 
-The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and adjoint.h
-(what they carry, and its derivatives).
+The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and
+cpp/photograd/render/path/adjoint.h (what they carry, and its derivatives).
 """
 
 from __future__ import annotations
@@ -216,8 +216,8 @@ class PathTracer:
         differences at one seed agree if `add_samples` is given the unperturbed parameters as
         `sampling_params`. To fit, take another seed: the noise of `d_image` is then independent of
         this estimate's, and their product is unbiased. Geometry is held fixed: edges of shadows
-        and silhouettes. What that leaves incomplete (`incomplete.py`) is absent from the
-        result, and asking for it raises.
+        and silhouettes. What that leaves incomplete (`incomplete`) is absent from the result, and
+        asking for it raises.
 
         Args:
             d_image: dL/dimage (H, W, 3).
@@ -226,7 +226,7 @@ class PathTracer:
             options: of the path tracer.
             camera: None takes the scene's.
             spread: "uniform" gives each pixel as many paths, "cotangent" more where the loss
-                looks (accumulation.py); then `seed` must not be that of the picture.
+                looks; then `seed` must not be that of the picture.
 
         Raises:
             ShapeError: d_image of another shape than the picture.

@@ -1,7 +1,7 @@
 """Recovery of what a path traced scene is made of, from pictures of it, by gradient descent.
 
 `recover` is the whole of it; `Recovery` is the loop behind it, a step at a time. What may be
-unknown is `parameters.py`, what is made small is `loss.py`.
+unknown is `photograd.transport.inverse.parameters`, what is made small is `cross_loss`.
 """
 
 from __future__ import annotations

@@ -36,8 +36,8 @@ def recover(
     [Vicini2021].
 
     Geometry is not among the unknowns: edges of shadows and silhouettes have no derivative here.
-    Neither is what has an incomplete one (`incomplete.py`): a search would walk away from the
-    truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
+    Neither is what has an incomplete one (`PathTracer.incomplete`): a search would walk away from
+    the truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
 
     Args:
         scene: with shapes, cameras and all that is known; for the unknowns a first guess.
