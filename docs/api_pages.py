@@ -6,8 +6,10 @@ Pages hold directives alone: docstrings and signatures come from the imported co
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
@@ -18,6 +20,10 @@ import docstrings  # noqa: E402
 
 FOLDER = DOCS / "api"
 LONGEST_VALUE = 80
+FILES = re.compile(
+    r"(?<![\w/])(?:(?:cpp|docs|tests|tools|python)/[\w/.]+|\w+\.(?:h|inl|cpp))(?![\w>`])"
+)
+"""What a docstring must not name, once files of the core and pages are links."""
 
 DOOR = {
     "Photographs": "load_capture Capture View Camera estimate_bounds read_image",
@@ -111,13 +117,25 @@ def index(names: list[str]) -> str:
 
 def named_sources() -> list[str]:
     """Files of the core, below cpp/photograd/, that a docstring of the reference names."""
-    found: set[str] = set()
-    for folder in api_names.SOURCES.values():
+    return sorted({name for text in all_docstrings() for name in docstrings.sources_in(text)})
+
+
+def unknown_files() -> list[str]:
+    """Other sources that a docstring names, which a reader of the pages does not have."""
+    texts = (docstrings.link_sources(text) for text in all_docstrings())
+    return sorted({found[0] for text in texts for found in FILES.finditer(text)})
+
+
+def all_docstrings() -> Iterator[str]:
+    """Of all modules, classes and functions that are not commands."""
+    for name, folder in api_names.SOURCES.items():
         for path in folder.rglob("*.py"):
+            parts = [name, *path.relative_to(folder).with_suffix("").parts]
+            if not api_names.is_documented(".".join(parts).removesuffix(".__init__")):
+                continue
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
-                    found.update(docstrings.sources_in(ast.get_docstring(node) or ""))
-    return sorted(found)
+                    yield ast.get_docstring(node) or ""
 
 
 def source_page(source: str) -> str:

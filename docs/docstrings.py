@@ -67,7 +67,7 @@ def to_rst(lines: list[str], *, is_property: bool = False) -> list[str]:
     """The lines of a docstring, dedented, as napoleon and docutils want them."""
     done: list[str] = []
     prose: list[str] = []
-    literal = section = item = False
+    literal = section = item = example = False
 
     def flush() -> None:
         done.extend(escape("\n".join(prose)).split("\n") if prose else [])
@@ -83,7 +83,8 @@ def to_rst(lines: list[str], *, is_property: bool = False) -> list[str]:
             literal = False
             section = bool(_SECTION.match(line)) or (section and not _blank_before(prose, done))
             item = bool(_ITEM.match(line)) or (item and not _blank_before(prose, done))
-        if line.lstrip().startswith((">>>", "...")):
+        example = bool(line) and (example or line.lstrip().startswith(">>>"))
+        if example:
             flush()
             done.append(line)
         elif indented and not section and not item:

@@ -58,6 +58,15 @@ def render(
         DtypeError: something else than these.
         RangeError: a model without a camera, or with an option of the path tracer; spp below 1.
         Error: radiance that is not finite; names the pixel.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 16)
+        >>> photograd.render(room, spp=4).shape
+        (16, 16, 3)
+        >>> capture = photograd.load_capture("photos")
+        >>> model = photograd.fit(capture, resolution=8, steps=2, rays=16)
+        >>> photograd.render(model, capture.test[0].camera).shape
+        (16, 16, 3)
     """
     if camera is not None:
         remedy = "pass its .camera" if hasattr(camera, "camera") else None

@@ -135,6 +135,13 @@ def evaluate(
         DtypeError: no `Model`, or no sequence of `View`s.
         RangeError: no views, or none with an 11 x 11 window of valid pixels.
         IoError: a photograph or a mask that cannot be read.
+
+    Example:
+        >>> capture = photograd.load_capture("photos")
+        >>> model = photograd.fit(capture, resolution=16, steps=20, rays=256)
+        >>> scores = photograd.evaluate(model, capture.test)
+        >>> scores.psnr > 5, [view.name for view in scores.views]
+        (True, ['test/r_000'])
     """
     require_instance("evaluate", "model", model, Model, "load_model reads one, fit makes one")
     if not isinstance(views, Sequence) or not all(isinstance(view, View) for view in views):

@@ -55,6 +55,12 @@ class PathTracer:
             where a light has become much stronger. Places and directions of lights are fixed;
             "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
         incomplete: {name: what is missing} of those params whose derivative is not handed out.
+
+    Example:
+        >>> room = photograd.PathTracer(photograd.builtin_scene("cornell-box", 8))
+        >>> image = room.render(spp=4, seed=0).mean
+        >>> room.render_backward(2 * image, spp=4, seed=1)["materials.red.albedo"].shape
+        (3,)
     """
 
     def __init__(
@@ -71,7 +77,7 @@ class PathTracer:
             DtypeError: no `Scene`, or dtype is neither float32 nor float64.
             SceneError: geometry that cannot be traced, or a light without area.
         """
-        remedy = "read_scene and read_model read files"
+        remedy = "read_scene reads a file; default_scene makes one of what read_model reads"
         require_instance("PathTracer", "scene", scene, Scene, remedy)
         self.dtype = np.dtype(dtype)
         if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):

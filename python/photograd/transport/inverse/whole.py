@@ -59,6 +59,17 @@ def recover(
         ShapeError: pictures that their cameras do not take.
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: a loss or derivative that is not finite.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 8)
+        >>> truth = photograd.PathTracer(room)
+        >>> truth.params["materials.red.albedo"][:] = 0.5
+        >>> photograph = truth.render(spp=64, seed=0).mean
+        >>> options = photograd.RecoveryOptions(steps=10, spp=2)
+        >>> found = photograd.recover(room, photograph, ["materials.red.albedo"], options=options)
+        >>> step, loss, rate = found.history.T
+        >>> found.params["materials.red.albedo"].shape
+        (3,)
     """
     with run_folder("recover", folder, FILE_NAME, resume=resume):
         job = Recovery(scene, targets, unknowns, options)
