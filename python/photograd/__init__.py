@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from photograd.fitting.evaluate import evaluate
     from photograd.geometry.mesh import Bvh, Mesh
     from photograd.images import read_image
-    from photograd.representation import Representation
+    from photograd.representation import Representation, check_gradients
     from photograd.splats import Gaussians
     from photograd.transport import (
         Material,
@@ -71,7 +71,7 @@ _HOME = {
     "photograd.fitting": "Fit FitOptions Model fit load_model",
     "photograd.geometry.mesh": "Bvh Mesh",
     "photograd.images": "read_image",
-    "photograd.representation": "Representation",
+    "photograd.representation": "Representation check_gradients",
     "photograd.splats": "Gaussians",
     "photograd.transport": "Material PathOptions PathTracer Scene builtin_scene read_scene",
     "photograd.transport.inverse": "RecoveryOptions Target Parameter recover",
@@ -105,6 +105,7 @@ __all__ = [
     "bsdf",
     "builtin_scene",
     "capture",
+    "check_gradients",
     "errors",
     "estimate_bounds",
     "evaluate",

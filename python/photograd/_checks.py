@@ -46,6 +46,22 @@ def require_finite(
             raise Error(message(function, name, "finite values", got, remedy))
 
 
+def require_instance(
+    function: str, argument: str, value: object, kind: type, remedy: str | None = None
+) -> None:
+    """Raise DtypeError unless `value` is an instance of `kind`.
+
+    Args:
+        function, argument: that was called, and what `value` was given as, for the error.
+        value: to be checked.
+        kind: a class.
+        remedy: what makes one, or takes one out of something larger.
+    """
+    if not isinstance(value, kind):
+        expected = f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}"
+        raise DtypeError(message(function, argument, expected, type(value).__name__, remedy))
+
+
 # Dataclasses of plain values, such as options and policies, checked against their annotations.
 
 

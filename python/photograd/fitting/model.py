@@ -74,7 +74,19 @@ class Model:
 
 
 def load_model(path: str | Path) -> Model:
-    """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""
+    """Load the model that a fit left in a folder.
+
+    Args:
+        path: the folder, or the file model.npz in it, or one of its snapshots.
+
+    Raises:
+        IoError: no file, or one that is damaged or holds something else.
+
+    Example:
+        >>> model = photograd.fit("photos", resolution=8, steps=2, rays=16, folder="model")
+        >>> photograd.load_model("model").field.name
+        'dense_grid'
+    """
     return model_of(load_checkpoint(path), Path(path))
 
 

@@ -1,7 +1,7 @@
 """Triangle meshes and the rays that meet them: what was hit, and where.
 
 The answer to *which* triangle comes from a bounding volume hierarchy in float32, robust at shared
-edges; *where* is recomputed in the dtype of the rays (cpp/photograd/geometry/).
+edges; *where* is recomputed in the dtype of the rays (cpp/photograd/geometry/bvh.h).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 `Scene` says what there is, `PathTracer` draws it; `read_scene`, `read_model` (mesh files) and
 `builtin` bring scenes from files and by name; `recover` finds in pictures what a scene is made of.
-The mathematics is in cpp/photograd/render/path/tracer.h and adjoint.h.
+The mathematics is in cpp/photograd/render/path/tracer.h and cpp/photograd/render/path/adjoint.h.
 """
 
 from __future__ import annotations

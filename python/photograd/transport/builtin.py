@@ -294,11 +294,20 @@ BUILTIN: dict[str, Callable[[int], Scene]] = {
 
 
 def builtin_scene(name: str, size: int = 256) -> Scene:
-    """A scene of `BUILTIN`, with a square camera of `size` pixels.
+    """A scene that needs no file, with a square camera.
+
+    Args:
+        name: one of `photograd.transport.builtin.BUILTIN`, such as "cornell-box".
+        size: pixels along an edge of its pictures.
 
     Raises:
-        SceneError: no such scene.
-        RangeError: no such size.
+        SceneError: no such scene; names the nearest.
+        RangeError: size below 1.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 16)
+        >>> sorted(room.materials)
+        ['green', 'lamp', 'red', 'white']
     """
     if name not in BUILTIN:
         known = choose_from(name, BUILTIN)

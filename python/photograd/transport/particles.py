@@ -1,8 +1,10 @@
 """Light tracing: particles from the lights, the irradiance where they land, and photon maps.
 
-The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/path/scatter.h (what
-surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h;
-that of photon maps in render/light/photon_map.h.
+The mathematics is in cpp/photograd/scene/emit.h (how they leave),
+cpp/photograd/render/path/scatter.h (what surfaces do to them),
+cpp/photograd/render/path/tracer.h (how they travel) and
+cpp/photograd/render/light/irradiance_sensor.h; that of photon maps in
+cpp/photograd/render/light/photon_map.h.
 """
 
 from __future__ import annotations

@@ -39,11 +39,21 @@ from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, 
 
 
 def read_scene(path: str | Path) -> Scene:
-    """The scene that a file describes.
+    """The scene that a TOML file describes; docs/scene_file.md has all that may stand there.
+
+    Args:
+        path: of the file.
 
     Raises:
         IoError: the file is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
         SceneError: what it says is no scene; names the line and the key.
+
+    Example:
+        >>> room = photograd.PathTracer(photograd.read_scene("room.toml"))
+        >>> image = room.render(spp=4, seed=0).mean  # (H, W, 3), linear radiance
+        >>> gradients = room.render_backward(np.ones_like(image), spp=4, seed=1)
+        >>> gradients["materials.wall.albedo"].shape
+        (3,)
     """
     path = Path(path)
     text = read_text("read_scene", path)

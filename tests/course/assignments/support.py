@@ -26,7 +26,9 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.assignment.checks_file import load_beside, load_module
+from photograd_course.assignment.checks import load_check_modules
+from photograd_course.assignment.load import load_beside, load_module
+from photograd_course.assignment.manifest import read_manifest
 from photograd_course.build.course_files import build_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
@@ -120,6 +122,15 @@ def lost(outcomes: list[Outcome]) -> set[str]:
     ours = [f"{each.id}: {each.text}" for each in outcomes if each.status is Status.ERROR_OURS]
     assert ours == []
     return {each.id for each in outcomes if each.status is not Status.PASSED}
+
+
+@functools.cache
+def load_checks_of(folder: Path) -> ModuleType:
+    """Everything that the files of an assignment's checks define, as one module."""
+    merged = ModuleType("checks")
+    for module in load_check_modules(read_manifest(folder)).values():
+        merged.__dict__.update(vars(module))
+    return merged
 
 
 @functools.cache

@@ -22,20 +22,22 @@ def test_the_scaffold_keeps_every_rule_for_any_secret(scaffold: Path, cache: Pat
 
 
 def test_solution(broken: Broken) -> None:
-    broken.change("checks.py", "[2.0, 4.0, 10.0]", "[2.0, 4.0, 11.0]")
+    broken.change("checks/task_1.py", "[2.0, 4.0, 10.0]", "[2.0, 4.0, 11.0]")
     assert broken.broken_rules() == {"solution"}
     assert "does not pass 17.1.known" in broken.says("solution")[0]
 
 
 def test_starter(broken: Broken) -> None:
     broken.change(
-        "checks.py", "    known = np", '    t.require(True, "")\n    return\n    known = np'
+        "checks/task_1.py", "    known = np", '    t.require(True, "")\n    return\n    known = np'
     )
     assert broken.says("starter") == ["the starter passes 17.1.known"]
 
 
 def test_starter_that_crashes(broken: Broken) -> None:
-    broken.change("checks.py", "    known = np", '    t.require(False, "no")\n    known = np')
+    broken.change(
+        "checks/task_1.py", "    known = np", '    t.require(False, "no")\n    known = np'
+    )
     assert (
         "17.1.known should say of the starter that it is not implemented"
         in broken.says("starter")[0]
@@ -121,7 +123,7 @@ def test_automatic(broken: Broken) -> None:
 
 
 def test_sole(broken: Broken) -> None:
-    broken.change("checks.py", 'sole="random', 'hint="random')
+    broken.change("checks/hidden/task_1.py", 'sole="random', 'hint="random')
     assert "17.1.random is never the only check to notice a mutant" in broken.says("sole")[0]
     # A mistake that shows at negative values only: the public check has none.
     path = broken.folder / "mutants.toml"
@@ -131,7 +133,7 @@ def test_sole(broken: Broken) -> None:
 
 
 def test_sole_by_an_automatic_mutant(broken: Broken) -> None:
-    broken.change("checks.py", 'sole="random', 'hint="random')
+    broken.change("checks/hidden/task_1.py", 'sole="random', 'hint="random')
     broken.change("light.py", "return 2.0 * x", "return 2.0 * x if x[0] >= 1.0 else x * 2.0")
     # "x * 2.0 -> x" shows only where x[0] < 1, and the public check has x[0] = 1.
     assert broken.says("sole") == []
@@ -147,7 +149,7 @@ def test_hints(broken: Broken) -> None:
 
 def test_a_check_that_falters_is_reported(broken: Broken) -> None:
     broken.change(
-        "checks.py",
+        "checks/task_1.py",
         "    t.close",
         "    assert t.call('twice', known, returns=Array((3,)))[0] == 2.0\n    t.close",
     )

@@ -60,7 +60,7 @@ import numpy as np
 from photograd_course.grading import Number, Tolerance, check
 
 
-@check("90.1.value", task="90.1", points=3, calls=("weighted_sum",), seconds=2.0,
+@check("90.1.value", points=3, calls=("weighted_sum",), seconds=2.0,
        tolerance=Tolerance(1e-12, "rounding"))
 def value(t):
     """The sum is right."""
@@ -89,7 +89,10 @@ def quick(toy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same with one check and little time, for many submissions."""
     folder = tmp_path_factory.mktemp("quick") / "90_toy"
     shutil.copytree(toy, folder)
-    (folder / "checks.py").write_text(QUICK_CHECKS)
+    shutil.rmtree(folder / "checks")
+    (folder / "checks").mkdir()
+    (folder / "checks" / "__init__.py").write_text("")
+    (folder / "checks" / "task_1.py").write_text(QUICK_CHECKS)
     manifest = folder / "assignment.toml"
     lines = [x for x in manifest.read_text().splitlines() if not x.startswith("limits")]
     tables = "[limits]\nseconds = 20\ncpu_seconds = 10\n"

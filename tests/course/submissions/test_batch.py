@@ -96,7 +96,7 @@ def test_a_changed_bundle_shows_who_changes_and_by_what(
     run()
     changed = tmp_path / "changed" / "90_toy"
     shutil.copytree(quick, changed)
-    checks = changed / "checks.py"
+    checks = changed / "checks" / "task_1.py"
     checks.write_text(checks.read_text().replace("w.sum() / 2", "w.sum() / 3"))
     _, differences = run(bundle=changed)
     assert differences is not None

@@ -33,7 +33,7 @@ LEAKS = {
 
 
 def spied(bundle: Bundle, visibility: str) -> Bundle:
-    @check("90.1.spied", task="90.1", points=3, calls=("weighted_sum",), visibility=visibility)
+    @check("90.1.spied", points=3, calls=("weighted_sum",), visibility=visibility)
     def spied_upon(t: Trial) -> None:
         """The sum is right."""
         import numpy as np

@@ -93,7 +93,7 @@ def test_a_broken_manifest_turns_the_verdict(
 def test_unreadable_sources_turn_the_verdict_and_stop_nothing(
     root: Path, diagnose: Callable[[], tuple[int, dict[str, Any]]]
 ) -> None:
-    (root / "90_toy" / "checks.py").write_text("def (:\n")
+    (root / "90_toy" / "checks" / "task_1.py").write_text("def (:\n")
     code, result = diagnose()
     assert (code, result["ok"]) == (1, False)
     assert result["modes"]["E"] == "works"

@@ -77,7 +77,7 @@ def test_a_missing_module_is_said_and_answers_still_count(bundle: Bundle, worker
 def test_a_check_that_raises_is_our_error_and_no_zero(
     grade_text: Grade, solution: str, small: Bundle
 ) -> None:
-    @check("90.1.ours", task="90.1", points=4, calls=("weighted_sum",))
+    @check("90.1.ours", points=4, calls=("weighted_sum",))
     def divides_by_zero(t: Trial) -> None:
         """We divide by zero."""
         t.call("weighted_sum", t.rng.random(2), t.rng.random(2), returns=Number())
@@ -94,7 +94,7 @@ def test_a_check_that_raises_is_our_error_and_no_zero(
 def test_a_check_that_compares_nothing_is_our_error(
     grade_text: Grade, solution: str, bundle: Bundle
 ) -> None:
-    @check("90.1.empty", task="90.1", points=4, calls=("weighted_sum",))
+    @check("90.1.empty", points=4, calls=("weighted_sum",))
     def asks_nothing(t: Trial) -> None:
         """Nothing is compared."""
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from photograd_course.assignment.tokens import LAYOUT, code_words, tokens
 from photograd_course.submissions.submission import SOURCE_BYTES
 
-SOURCES = sorted(Path(__file__).parents[3].glob("assignments/*/checks.py"))
+SOURCES = sorted(Path(__file__).parents[3].glob("assignments/*/checks/*.py"))
 _SILENT = {
     tokenize.COMMENT,
     tokenize.NL,

@@ -1,7 +1,8 @@
 """Inverse rendering: parameters of a path traced scene from pictures of it, by gradient descent.
 
 `recover` is the whole of it; `InverseRendering` is the loop behind it, a step at a time. The
-parameters that may be found are in `parameters.py`, the loss is in `loss.py`.
+parameters that may be found are in `photograd.transport.inverse.parameters`, the loss is
+`dual_buffer_loss`.
 """
 
 from __future__ import annotations

@@ -159,7 +159,7 @@ def loss_and_gradients(
         camera, options: as for `PathTracer.render`.
         names: of the parameters wanted; None for all whose derivative is whole.
         spread: "uniform" gives each pixel as many samples; "cotangent" more to those that are noisy
-            and far from the target (accumulation.py), as one sample in `PILOT` finds out first.
+            and far from the target, as one sample in `PILOT` finds out first.
 
     Returns:
         The loss, and {name: dL/dparameter}, float64: the derivative of that very loss, the choice

@@ -35,9 +35,9 @@ def recover(
     number of samples (`dual_buffer_loss`). Inverse path tracing: [Azinovic2019]; the adjoint of a
     path: [Vicini2021].
 
-    Geometry cannot be found: edges of shadows and silhouettes have no derivative here.
-    Neither is what has an incomplete one (`incomplete.py`): a search would walk away from the
-    truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
+    Geometry cannot be found: edges of shadows and silhouettes have no derivative here. Neither can
+    parameters whose derivative is incomplete (`PathTracer.incomplete`): a search would walk away
+    from the truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
 
     Args:
         scene: all that is known; `parameters` begin at its values unless they have a start.
@@ -59,6 +59,17 @@ def recover(
         ShapeError: pictures that their cameras do not take.
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: a loss or derivative that is not finite.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 8)
+        >>> truth = photograd.PathTracer(room)
+        >>> truth.params["materials.red.albedo"][:] = 0.5
+        >>> photograph = truth.render(spp=64, seed=0).mean
+        >>> options = photograd.RecoveryOptions(steps=10, spp=2)
+        >>> found = photograd.recover(room, photograph, ["materials.red.albedo"], options=options)
+        >>> step, loss, rate = found.history.T
+        >>> found.params["materials.red.albedo"].shape
+        (3,)
     """
     with run_folder("recover", folder, FILE_NAME, resume=resume):
         job = InverseRendering(scene, targets, parameters, options)

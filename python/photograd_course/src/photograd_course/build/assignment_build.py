@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from ..assignment.checks_file import load_checks
+from ..assignment.checks import load_checks
 from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.questions import Question, read_questions
 from ..grading.check import Check

@@ -23,7 +23,7 @@ class Products:
 
     Attributes:
         kit: the student's folder.
-        checks: the public checks.
+        public: the public checks, with what running them takes.
         hidden: the sealed bundle, a zip.
         solution: module, worked handout, figures, mutants, alternatives, questions with keys, and
             which check kills which mutant.
@@ -31,7 +31,7 @@ class Products:
     """
 
     kit: Mapping[str, bytes]
-    checks: Mapping[str, bytes]
+    public: Mapping[str, bytes]
     hidden: bytes
     solution: Mapping[str, bytes]
     gradescope: bytes
@@ -40,7 +40,7 @@ class Products:
         """All of them, by path in the output folder."""
         return {
             **{f"kit/{path}": data for path, data in self.kit.items()},
-            **{f"checks/{path}": data for path, data in self.checks.items()},
+            **{f"public/{path}": data for path, data in self.public.items()},
             **{f"solution/{path}": data for path, data in self.solution.items()},
             "hidden.zip": self.hidden,
             "gradescope.zip": self.gradescope,
@@ -58,7 +58,7 @@ def make_products(build: AssignmentBuild, wheels: Mapping[str, bytes] | None = N
     number, secret = build.manifest.id, build.secret
     return Products(
         kit=kit_files(build.folder),
-        checks=public_files(build.folder),
+        public=public_files(build.folder),
         hidden=hidden,
         solution=solution_files(build),
         gradescope=gradescope_zip(number, hidden, secret, wheels),

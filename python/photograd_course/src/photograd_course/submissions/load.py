@@ -9,21 +9,15 @@ from pathlib import Path
 
 from ..assignment.brought import brought_sources
 from ..assignment.bundle import PUBLIC_SECRET, Bundle, read_folder
+from ..assignment.check_files import check_files
 from ..assignment.manifest import Manifest, read_manifest
 from ..build.kits import find_kit, kit_files, match_folder, no_sources, source_folders
 from ..build.seal import open_bundle
 from ..build.secret import read_secret
 from ..errors import Error, IoError, SceneError, message
 
-# What a verdict depends on, in a folder; a built bundle is one file.
-JUDGING = (
-    "assignment.toml",
-    "checks.py",
-    "questions.toml",
-    "answers.py",
-    "adapters.py",
-    "hints.json",
-)
+# What a verdict depends on, in a folder, besides its checks; a built bundle is one file.
+JUDGING = ("assignment.toml", "questions.toml", "answers.py", "adapters.py", "hints.json")
 
 
 @dataclass(frozen=True)
@@ -104,6 +98,7 @@ def _folder_digest(folder: Path, secret: bytes) -> str:
     manifest = read_manifest(folder)
     names = sorted({*JUDGING, f"{manifest.module}.py"})
     data = {name: (folder / name).read_bytes() for name in names if (folder / name).is_file()}
+    data |= {path: text.encode() for path, text in check_files(folder).items()}
     for name, text in brought_sources(folder, manifest).items():
         data[f"{name}.py"] = text.encode()
     for name, content in data.items():
