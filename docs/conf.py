@@ -47,6 +47,9 @@ napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
 
+PROTOCOL = ("photograd.representation.base", "photograd.representation.fittable")
+"""Modules whose methods are described once, though many classes override them."""
+
 
 class KeyLabels(BaseLabelStyle):
     """The label of a reference is the key under which the sources cite it."""
@@ -75,7 +78,21 @@ def _edit_docstring(
     lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
+def _skip_overrides(
+    _app: Sphinx, _what: str, _name: str, thing: Any, _skip: bool, _options: object
+) -> bool | None:
+    """Methods that a representation has by protocol are described there, not in each class."""
+    thing = getattr(thing, "fget", None) or getattr(thing, "__func__", thing)
+    owner, _, name = getattr(thing, "__qualname__", "").rpartition(".")
+    cls = getattr(sys.modules.get(getattr(thing, "__module__", "")), owner, None)
+    if not isinstance(cls, type):
+        return None
+    bases = (base for base in cls.__mro__[1:] if base.__module__ in PROTOCOL)
+    return True if any(name in vars(base) for base in bases) else None
+
+
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
+    app.connect("autodoc-skip-member", _skip_overrides)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

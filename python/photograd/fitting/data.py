@@ -79,9 +79,10 @@ class TrainingPixels:
     """Premultiplied linear color and alpha of every valid pixel, and the cameras they belong to.
 
     Attributes:
-        premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha. color_space: "display" if
-        the files were 8-bit sRGB (the loss is then taken on encoded values). digest: twelve
-        hexadecimal digits that change with any image or camera.
+        premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha.
+        color_space: "display" if the files were 8-bit sRGB; the loss is then taken on encoded
+            values.
+        digest: twelve hexadecimal digits that change with any image or camera.
     """
 
     def __init__(self, views: Sequence[View], color_space: str) -> None:
