@@ -127,7 +127,10 @@ def unknown_files() -> list[str]:
 
 
 def all_docstrings() -> Iterator[str]:
-    """Of all modules, classes and functions that are not commands."""
+    """Of all modules, classes, functions and constants that are not commands."""
+    for module in api_names.modules().values():
+        if api_names.is_documented(module.name):
+            yield from (docstring for *_, docstring in module.constants.values())
     for name, folder in api_names.SOURCES.items():
         for path in folder.rglob("*.py"):
             parts = [name, *path.relative_to(folder).with_suffix("").parts]
