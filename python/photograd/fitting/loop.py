@@ -70,7 +70,14 @@ class Fit:
     def __init__(
         self, capture: Capture, options: FitOptions, model: Fittable, background: Array | None
     ) -> None:
-        """Use `start` or `resume`."""
+        """Use `start` or `resume`.
+
+        Args:
+            capture: the photographs.
+            options: of the fit.
+            model: the field at the first step.
+            background: (3,) parameter of a learned background, or None.
+        """
         self.capture = capture
         self.options = options
         self.model = model
@@ -178,14 +185,22 @@ class Fit:
         return self.data.draw(options.rays, seed=options.seed, step=self.step_number)
 
     def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
-        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior."""
+        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior.
+
+        Args:
+            chosen: what `draw` returned.
+        """
         behind = Background(self.background, self.background_kind)
         found = self.data.loss_and_grad(self.model, chosen, behind, self.options, self.step_number)
         self.batch_psnr = found.psnr
         return found.loss, found.gradients
 
     def batches(self, max_rays: int) -> Iterator[RayBatch]:
-        """Rays of all training views, evenly spaced, at most about `max_rays`."""
+        """Rays of all training views, evenly spaced, at most about `max_rays`.
+
+        Args:
+            max_rays: about so many in all.
+        """
         return self.data.batches(max_rays)
 
     def mean_gradient(self, group: str, max_rays: int) -> Array:
@@ -261,6 +276,9 @@ class Fit:
 
         Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
         never replaced by a bad one.
+
+        Args:
+            folder: DIR, which exists.
         """
         require_finite(self.model.params, self.step_number)
         params = dict(self.model.params)

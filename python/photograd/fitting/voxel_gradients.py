@@ -124,6 +124,10 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     it covers, in every view, are opaque, and background-only if all of them are empty. Voxels that
     fewer than two views see are neither, nor are those that a sparse grid lacks. Raises RangeError
     if the capture has no alpha.
+
+    Args:
+        field: whose voxels are classified.
+        capture: photographs with alpha.
     """
     if not capture.has_alpha:
         raise RangeError(

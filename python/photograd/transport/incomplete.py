@@ -29,7 +29,7 @@ TURNING = {
     "dispersive_glass": (("eta", "dispersion"), "dispersive_dielectric"),
 }
 """Of specular models: the parameters that turn their lobes, and the rough model of the same
-surface. tests/transport/test_incomplete.py finds both for every registered model."""
+surface; a test finds both for every registered model."""
 EXPECTED = "a parameter whose derivative is whole"
 
 
