@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,6 +79,19 @@ def _edit_docstring(
     lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
+def _edit_signature(
+    _app: Sphinx,
+    _what: str,
+    _name: str,
+    _thing: object,
+    _options: object,
+    signature: str | None,
+    returns: str | None,
+) -> tuple[str | None, str | None]:
+    """A signature that autodoc cannot parse, as with `<factory>`, keeps its marks of short names."""
+    return signature and re.sub(r"~(?:\w+\.)+(\w)", r"\1", signature), returns
+
+
 def _skip_overrides(
     _app: Sphinx, _what: str, _name: str, thing: Any, _skip: bool, _options: object
 ) -> bool | None:
@@ -94,5 +108,6 @@ def _skip_overrides(
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
+    app.connect("autodoc-process-signature", _edit_signature)
     app.connect("autodoc-skip-member", _skip_overrides)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

@@ -65,6 +65,15 @@ class Fit:
 
     `Fit.start` begins one, `Fit.resume` continues from a folder; `run` goes on until the end,
     saving a checkpoint every `checkpoint_seconds` and whenever `should_stop()` says so.
+
+    Attributes:
+        capture: the photographs.
+        options: of the fit.
+        model: the field as it is now, a representation; `load_model` makes a `Model` of what `run`
+            saved.
+        background: (3,) parameter of a learned background, or None.
+        step_number: how many steps were done.
+        history: (step, loss, PSNR of the batch in dB) of each.
     """
 
     def __init__(
@@ -102,12 +111,19 @@ class Fit:
     ) -> Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
-        Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
-        from one, and a textured mesh needs one with its mesh.
+        Args:
+            capture: the photographs.
+            options: of the fit; `options_for` has those of a representation. Grids begin coarse:
+                see `FitOptions`.
+            allow_blind: accept training cameras that do not see the scene's box, if any does.
+            start_from: another model: Gaussians may begin on its surfaces, the leaves of an octree
+                have to be cut from one, and a textured mesh needs one with its mesh.
 
-        Raises RangeError for an unknown or unfit representation, or options that take more memory
-        than there is; SceneError naming the training cameras that do not see the scene's box (with
-        `allow_blind` only if none does).
+        Raises:
+            DtypeError: no `Capture`, or no `FitOptions`.
+            RangeError: an unknown representation, or one that no capture can start; options that
+                take more memory than there is.
+            SceneError: training cameras that do not see the scene's box; names them.
         """
         require_instance("Fit.start", "capture", capture, Capture, "load_capture reads one")
         require_instance("Fit.start", "options", options, FitOptions)
@@ -134,10 +150,15 @@ class Fit:
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`.
+        """Continue the fit that left a checkpoint in a folder.
 
-        Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
-        capture: other names, other images, other cameras or another size.
+        Args:
+            capture: that the fit was started on.
+            folder: that `run` was given.
+
+        Raises:
+            IoError: a missing or damaged checkpoint.
+            RangeError: one of another capture: other names, images, cameras or another size.
         """
         saved = load_checkpoint(folder)
         model = model_of(saved, folder)

@@ -167,7 +167,7 @@ def ssim_backward(x: Array, y: Array, d_value: float = 1.0) -> tuple[float, Arra
         d_value: dL/d of the value.
 
     Raises:
-        What `ssim` raises.
+        DtypeError, ShapeError, RangeError: as `ssim`.
     """
     x = np.ascontiguousarray(x)
     d_x = np.zeros_like(x)

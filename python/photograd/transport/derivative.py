@@ -115,7 +115,9 @@ def add_derivative_samples(
     """Add the next `spp` samples to both sums, in place; arguments as for `derivative_image`.
 
     Raises:
-        As `derivative_image`; ShapeError: sums of another size; RangeError: of other counts.
+        RangeError: as `derivative_image`, and for sums of other counts.
+        ShapeError: sums of another size.
+        Error: as `derivative_image`.
     """
     view = tracer.scene.camera if camera is None else camera
     for name, sums in (("picture", picture), ("derivative", derivative)):

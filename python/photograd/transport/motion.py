@@ -50,7 +50,7 @@ def moved_on(shape: Shape, way: Array) -> Shape:
 
     Raises:
         SceneError: a sphere that would turn or grow, or a signed distance function.
-        As `MeshShape`.
+        RangeError, SceneError: as `MeshShape`.
     """
     if isinstance(shape, MeshShape):
         starts = shape.places or (np.eye(4),)

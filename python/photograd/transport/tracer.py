@@ -183,7 +183,8 @@ class PathTracer:
                 nothing to `sums`, and `hits` counts the others: `hits / sums.count` is alpha.
 
         Raises:
-            As `render`; ShapeError: sums or hits of another size.
+            RangeError, Error: as `render`.
+        ShapeError: sums or hits of another size.
         """
         view = self.scene.camera if camera is None else camera
         sums.check_call("add_samples", (view.height, view.width), spp)

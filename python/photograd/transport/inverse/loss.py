@@ -166,8 +166,8 @@ def loss_and_gradients(
         of paths held fixed.
 
     Raises:
-        As `PathTracer.render` and `render_backward`; RangeError: names whose derivative is
-        incomplete.
+        ShapeError, Error: as `PathTracer.render` and `render_backward`.
+        RangeError: as these, and for names whose derivative is incomplete.
     """
     typed("loss_and_gradients", "spread", Spread, spread)
     wanted = None if names is None else list(names)
