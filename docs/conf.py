@@ -88,7 +88,7 @@ def _edit_signature(
     signature: str | None,
     returns: str | None,
 ) -> tuple[str | None, str | None]:
-    """A signature that autodoc cannot parse, as with `<factory>`, keeps its marks of short names."""
+    """Short names in signatures that autodoc cannot parse, as those with `<factory>`."""
     return signature and re.sub(r"~(?:\w+\.)+(\w)", r"\1", signature), returns
 
 

@@ -302,7 +302,7 @@ class Body:
         not end in a hit beyond t_min count for nothing.
 
         Raises:
-            DtypeError, RangeError: as `trace`.
+            RangeError: as `trace`.
         ShapeError: as `trace`, and for hits or d_t of other rays.
         """
         call = Arguments("Body.trace_backward", np.float64)

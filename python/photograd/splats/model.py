@@ -105,6 +105,13 @@ class GaussianScene(Fittable):
         """`active_degree` None draws all harmonics.
 
         Raises RangeError for a bad extent or degree.
+
+        Args:
+            gaussians: all of one dtype.
+            extent: of the scene, in meters.
+            policy: options of the rendering.
+            control: of the number of Gaussians; None leaves it.
+            active_degree: highest degree of the harmonics that are drawn.
         """
         if not 0 < extent < np.inf:
             raise RangeError(message("GaussianScene", "extent", "a positive length", f"{extent}"))
