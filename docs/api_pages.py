@@ -29,7 +29,7 @@ DOOR = {
     "Photographs": "load_capture Capture View Camera estimate_bounds read_image",
     "Fitting": "fit evaluate render load_model Model Fit FitOptions",
     "Path tracing": "read_scene builtin_scene read_model PathTracer PathOptions Scene Material",
-    "Inverse rendering": "recover Target Unknown RecoveryOptions",
+    "Inverse rendering": "recover Target Parameter RecoveryOptions",
     "Representations": "representations check_gradients Representation DenseGrid SparseSh OctreeSh "
     "GaussianScene Gaussians",
     "Meshes, errors": "Mesh Bvh Error",

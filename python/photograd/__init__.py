@@ -48,12 +48,12 @@ if TYPE_CHECKING:
     from photograd.splats import Gaussians
     from photograd.transport import (
         Material,
+        Parameter,
         PathOptions,
         PathTracer,
         RecoveryOptions,
         Scene,
         Target,
-        Unknown,
         builtin_scene,
         read_model,
         read_scene,
@@ -74,7 +74,7 @@ _HOME = {
     "photograd.representation": "Representation check_gradients",
     "photograd.splats": "Gaussians",
     "photograd.transport": "Material PathOptions PathTracer Scene builtin_scene read_scene",
-    "photograd.transport.inverse": "RecoveryOptions Target Unknown recover",
+    "photograd.transport.inverse": "RecoveryOptions Target Parameter recover",
     "photograd.transport.mesh_files": "read_model",
 }
 """Names at the door, by the module in which each is defined."""
@@ -93,6 +93,7 @@ __all__ = [
     "Mesh",
     "Model",
     "OctreeSh",
+    "Parameter",
     "PathOptions",
     "PathTracer",
     "RecoveryOptions",
@@ -100,7 +101,6 @@ __all__ = [
     "Scene",
     "SparseSh",
     "Target",
-    "Unknown",
     "View",
     "bsdf",
     "builtin_scene",

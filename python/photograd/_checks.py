@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 from photograd._arrays import shortened
 from photograd.errors import DtypeError, Error, RangeError, message
 
-Place = Callable[[tuple[int, ...]], str]
+NameOfIndex = Callable[[tuple[int, ...]], str]
 
 
-def require_finite(function: str, outputs: Mapping[str, NDArray[Any] | None], place: Place) -> None:
+def require_finite(
+    function: str, outputs: Mapping[str, NDArray[Any] | None], name_of: NameOfIndex
+) -> None:
     """Check what a renderer returns.
 
     Args:
         function: the renderer, for the error.
         outputs: arrays by name; None is skipped.
-        place: what an index of an array is called, such as a pixel.
+        name_of: what an index of an array is called, such as a pixel.
 
     Raises:
         Error: an array with NaN or infinity, and where the first one is.
@@ -39,7 +41,7 @@ def require_finite(function: str, outputs: Mapping[str, NDArray[Any] | None], pl
                 continue
         bad = np.argwhere(~np.isfinite(array))
         if len(bad):
-            got = f"{len(bad)} that are not, the first in {place(tuple(bad[0].tolist()))}"
+            got = f"{len(bad)} that are not, the first in {name_of(tuple(bad[0].tolist()))}"
             remedy = "a parameter holds NaN, infinity, or a number too large to add up"
             raise Error(message(function, name, "finite values", got, remedy))
 

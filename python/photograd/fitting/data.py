@@ -289,8 +289,8 @@ class TrainingViews:
             step: of the fit.
         """
         del count
-        turn, place = divmod(step, len(self.views))
-        return int(permutation(seed, len(self.views), step=turn, dimension=8)[place])
+        turn, index = divmod(step, len(self.views))
+        return int(permutation(seed, len(self.views), step=turn, dimension=8)[index])
 
     def size_of(self, rays: int) -> int:
         """Pixels of a step, which draws a view whatever number of `rays` others have: the mean."""

@@ -191,9 +191,9 @@ def load_snapshots(folder: Path) -> dict[int, Fittable]:
     Args:
         folder: of the fit, or a file in it.
     """
-    place = folder if folder.is_dir() else folder.parent
+    beside = folder if folder.is_dir() else folder.parent
     found = {}
-    for file in sorted((place / "snapshots").glob("step_*.npz")):
+    for file in sorted((beside / "snapshots").glob("step_*.npz")):
         saved = load_checkpoint(file)
         found[int(saved.meta["step"])] = model_of(saved, file).field
     return found

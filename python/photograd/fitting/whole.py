@@ -73,22 +73,22 @@ def fit(
     if start_from is not None:
         require_instance("fit", "start_from", start_from, Model, "load_model reads one")
     photographs = capture if isinstance(capture, Capture) else load_capture(capture)
-    place = None if folder is None else Path(folder)
-    with run_folder("fit", place, FILE_NAME, resume=resume):
+    path = None if folder is None else Path(folder)
+    with run_folder("fit", path, FILE_NAME, resume=resume):
         if chosen is None:
             if options or start_from is not None:
                 expected, got = "options of the checkpoint alone", "others as well"
                 raise RangeError(message("fit", "options", expected, got, "leave them out"))
-            assert place is not None  # `run_folder` refuses to resume without one
-            job = Fit.resume(photographs, place)
+            assert path is not None  # `run_folder` refuses to resume without one
+            job = Fit.resume(photographs, path)
         else:
             job = Fit.start(photographs, chosen, start_from=start_from)
         with ExitStack() as stack:
-            if place is None:
-                place = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
+            if path is None:
+                path = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
             on_step = stack.enter_context(progress_bar("fit", job, shown=bar))
-            job.run(place, on_step=on_step)
-            return load_model(place)
+            job.run(path, on_step=on_step)
+            return load_model(path)
 
 
 def _checked_options(representation: str, options: Mapping[str, Any]) -> FitOptions:

@@ -24,12 +24,12 @@ from photograd.transport.core_arrays import (
     glows_of,
     instances_of,
     light_shapes,
-    listed_lights,
     mean_emission,
+    packed_lights,
     textures_of,
 )
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
-from photograd.transport.media_list import ListedMedia
+from photograd.transport.media_list import PackedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
 from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
@@ -85,8 +85,8 @@ class PathTracer:
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
-        self._lights = listed_lights(scene)
-        self._media = ListedMedia(scene.media, scene.materials, scene.world)
+        self._lights = packed_lights(scene)
+        self._media = PackedMedia(scene.media, scene.materials, scene.world)
         names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
         # nothing, by a material that is no parameter, and boundaries have none.
@@ -121,9 +121,9 @@ class PathTracer:
         )
         glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
         self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
-        places = self._media.places(self._shapes, self._owner)
-        if places is not None:
-            self._geometry.set_media(**places)
+        media = self._media.core_arguments(self._shapes, self._owner)
+        if media is not None:
+            self._geometry.set_media(**media)
         marked = [m.model + "+alpha" * m.has_opacity for m in scene.materials.values()]
         self._models = [*marked, "lambert"]
 
