@@ -47,7 +47,11 @@ class ParticleOptions:
             raise RangeError(message("ParticleOptions", "roulette_from", "at least 0", got))
 
     def numbers(self, seed: int) -> tuple[int, int, int]:
-        """As the core takes them."""
+        """As the core takes them.
+
+        Args:
+            seed: of all random numbers.
+        """
         late = NEVER if self.roulette_from is None else self.roulette_from
         return self.max_depth, late, seed
 
@@ -171,6 +175,12 @@ class Emitted:
 def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0) -> Emitted:
     """The particles that `trace_light` follows, `first` to `first + count - 1`.
 
+    Args:
+        tracer: of the scene.
+        count: of particles.
+        seed: of all random numbers.
+        first: number of the first particle.
+
     Raises:
         RangeError: count below 1, or a scene without lights.
         SceneError: as `trace_light`.
@@ -185,6 +195,10 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
 
 def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     """The scene as the core's functions take it that have no camera.
+
+    Args:
+        function: on whose behalf the error speaks.
+        tracer: of the scene.
 
     Raises:
         SceneError: shapes that move.
@@ -275,6 +289,12 @@ class PhotonMap:
         A camera path goes through specular surfaces, and through media, to the first surface that
         is not specular; all the light there is read from the map. Light that media scatter is path
         traced.
+
+        Args:
+            sums: of the same seed and options, or empty.
+            spp: samples a pixel.
+            seed: of all random numbers.
+            options: of the path tracer.
 
         Raises:
             RangeError: spp below 1.
