@@ -48,7 +48,11 @@ napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
 
-PROTOCOL = ("photograd.representation.base", "photograd.representation.fittable")
+PROTOCOL = (
+    "photograd.representation.base",
+    "photograd.representation.fittable",
+    "photograd.fields.voxel_field",
+)
 """Modules whose methods are described once, though many classes override them."""
 
 

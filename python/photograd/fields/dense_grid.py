@@ -49,6 +49,11 @@ def cubic_voxels(extent: Array, resolution: int) -> list[int]:
 def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, int]:
     """Voxels along each edge of a box that stays as it is; they are nearly cubes.
 
+    Args:
+        function: on whose behalf the error speaks.
+        box: (2, 3) in meters.
+        resolution: voxels along the longest edge.
+
     Raises:
         RangeError: fewer than 2 voxels along the longest edge.
     """
@@ -84,7 +89,13 @@ class DenseGrid(GridField):
     row_updates: ClassVar[bool] = False  # most rows have a gradient
 
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
-        """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite."""
+        """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite.
+
+        Args:
+            values: raw color and density of each voxel.
+            policy: the box, the step and the activations.
+            fused: False takes the readable form of the kernel.
+        """
         if values.ndim != 4 or values.shape[3] != 4 or min(values.shape[:3]) < 2:
             raise ShapeError(
                 message("DenseGrid", "values", "shape (X, Y, Z, 4), X Y Z >= 2", f"{values.shape}")
@@ -117,6 +128,14 @@ class DenseGrid(GridField):
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
         density scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is
         the start. Raises RangeError for a bad box, fewer than 2 voxels, or more than memory holds.
+
+        Args:
+            box: (2, 3) in meters.
+            resolution: voxels along the longest edge.
+            finest: resolution at the end of a fit; None takes `resolution`.
+            sigma_t: extinction in 1/m.
+            steps_per_voxel: of the march.
+            dtype: np.float32 or np.float64.
         """
         if resolution < 2:
             raise RangeError(

@@ -36,7 +36,12 @@ class TinyNetwork(Representation):
     teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(self, weights: Array, policy: MarchPolicy) -> None:
-        """Raises ShapeError unless weights is a flat array of the network's size."""
+        """Raises ShapeError unless weights is a flat array of the network's size.
+
+        Args:
+            weights: of all layers, flat.
+            policy: box, step and activations.
+        """
         if weights.shape != (_core.tiny_network_parameters,):
             raise ShapeError(
                 message(

@@ -178,7 +178,7 @@ def mean_colors(views: Sequence[View], points: Array, *, max_views: int = 24) ->
     Args:
         views: the photographs.
         points: (N, 3).
-        most: at most so many views, evenly spaced.
+        max_views: at most so many, evenly spaced.
     """
     total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
     for view in views[:: max(1, len(views) // max_views)]:

@@ -209,10 +209,10 @@ class PackedMedia:
         return found
 
     def named(self, blocks: Mapping[str, Array]) -> dict[str, Array]:
-        """The derivatives in "media.I" and "densities.I", under the names of the params.
+        """The derivatives of "media.I" and "densities.I", under the names of the params.
 
         Args:
-            blocks: derivatives by the names of the core's blocks.
+            blocks: derivatives, under the names of blocks of the core.
         """
         gradients: dict[str, Array] = {}
         for i, (name, medium) in enumerate(self.media.items()):

@@ -316,7 +316,7 @@ class PhotonMap:
         sums.check_finite("PhotonMap.add_samples")
 
     def render(self, *, spp: int, seed: int, options: PathOptions = DEFAULTS) -> Accumulation:
-        """A picture of `spp` samples a pixel; arguments and errors as `add_samples`."""
+        """A picture of `spp` samples a pixel; `seed`, `options` and errors as of `add_samples`."""
         view = self.tracer.scene.camera
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options)
