@@ -280,7 +280,7 @@ class SparseSh(GridField):
     def add_variation(
         self, values: Array, d_value: float, d_values: Array, bricks: tuple[int, int]
     ) -> None:
-        """Add the adjoint, for `d_value`, of the variation of `values` in `bricks` to `d_values`."""
+        """Add the adjoint for `d_value` of the variation of `values` in `bricks` to `d_values`."""
         flat = np.ascontiguousarray(values).reshape(len(values), -1)
         d_flat = d_values.reshape(flat.shape)
         _core.total_variation_backward(self.active.topology, flat, d_value, *bricks, d_flat)
