@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pybtex.plugin import register_plugin
 from pybtex.style.formatting.unsrt import Style
 from pybtex.style.labels import BaseLabelStyle
+from sphinx.util.inspect import TypeAliasForwardRef
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import api_pages
@@ -42,9 +43,17 @@ autodoc_type_aliases = {
 }
 napoleon_numpy_docstring = False
 napoleon_custom_sections = [("Fields", "params_style")]
+napoleon_use_param = False  # which would describe "spp, seed" once for each
 napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
+
+PROTOCOL = (
+    "photograd.representation.base",
+    "photograd.representation.fittable",
+    "photograd.fields.voxel_field",
+)
+"""Modules whose methods are described once, though many classes override them."""
 
 
 class KeyLabels(BaseLabelStyle):
@@ -62,17 +71,16 @@ class KeyStyle(Style):
     default_label_style = KeyLabels
 
 
+# Inside of a union or a container, autodoc writes an alias as its repr.
+TypeAliasForwardRef.__repr__ = lambda alias: alias.name
+
 register_plugin("pybtex.style.formatting", "keys", KeyStyle)
 
 
 def _edit_docstring(
-    _app: Sphinx, _what: str, _name: str, _thing: object, _options: object, lines: list[str]
+    _app: Sphinx, what: str, _name: str, _thing: object, _options: object, lines: list[str]
 ) -> None:
-    lines[:] = docstrings.to_rst(lines)
-
-
-# How autodoc writes an alias inside of a union.
-_ALIAS = re.compile(r"TypeAliasForwardRef\('([\w.]+)'\)")
+    lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
 def _edit_signature(
@@ -84,11 +92,26 @@ def _edit_signature(
     signature: str | None,
     returns: str | None,
 ) -> tuple[str | None, str | None]:
-    return signature and _ALIAS.sub(r"\1", signature), returns and _ALIAS.sub(r"\1", returns)
+    """Short names in signatures that autodoc cannot parse, as those with `<factory>`."""
+    return signature and re.sub(r"~(?:\w+\.)+(\w)", r"\1", signature), returns
+
+
+def _skip_overrides(
+    _app: Sphinx, _what: str, _name: str, thing: Any, _skip: bool, _options: object
+) -> bool | None:
+    """Methods that a representation has by protocol are described there, not in each class."""
+    thing = getattr(thing, "fget", None) or getattr(thing, "__func__", thing)
+    owner, _, name = getattr(thing, "__qualname__", "").rpartition(".")
+    cls = getattr(sys.modules.get(getattr(thing, "__module__", "")), owner, None)
+    if not isinstance(cls, type):
+        return None
+    bases = (base for base in cls.__mro__[1:] if base.__module__ in PROTOCOL)
+    return True if any(name in vars(base) for base in bases) else None
 
 
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
     app.connect("autodoc-process-signature", _edit_signature)
+    app.connect("autodoc-skip-member", _skip_overrides)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

@@ -12,7 +12,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 START = "Assignments ready: "
 # What makes an assignment ready: everything that a submission meets.
-FILES = ("assignment.toml", "checks.py", "handout.md", "explore.py", "figures.py", "hints.json")
+FILES = (
+    "assignment.toml",
+    "checks/__init__.py",
+    "handout.md",
+    "explore.py",
+    "figures.py",
+    "hints.json",
+)
 
 
 def ready_line() -> str:

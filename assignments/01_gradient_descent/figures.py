@@ -34,8 +34,8 @@ def _slope(x, y):
 
 
 def fig1_two_errors(module):
-    """Error of difference quotients against eps."""
-    points = np.linspace(0.3, 1.1, 9)  # the mean over these evens out rounding
+    """Error of finite differences against eps."""
+    points = np.linspace(0.3, 1.1, 9)  # the mean over these averages rounding errors
     eps = 10.0 ** np.arange(-13.0, -0.4, 0.25)
 
     def values(y):
@@ -65,16 +65,16 @@ def fig1_two_errors(module):
         axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
         axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
         axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
-        axes.annotate("rounding: slope -1", (3e-11, 2e-4), color=style.GUIDE)
+        axes.annotate("rounding error: slope -1", (3e-11, 2e-4), color=style.GUIDE)
         axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
-        axes.set_title("derivative of exp from its values, nine points between 0.3 and 1.1")
+        axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
         axes.legend(loc="lower left")
         axes.grid(visible=True)
     return figure, facts
 
 
 def fig2_step_lengths(module):
-    """A parabola: distance to the minimum for five step lengths."""
+    """A parabola: distance to the minimum for five learning rates."""
     n = 24
     reaches = (0.2, 1.0, 1.8, 2.0, 2.1)
     walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
@@ -87,14 +87,14 @@ def fig2_step_lengths(module):
         "0.2 and 1.8 are equally fast": (float(np.abs(x[1.8][-1] / x[0.2][-1])), 0.999, 1.001),
         "at 2 the distance stays 1": bool((np.abs(x[2.0]) == 1.0).all()),
         "at 2.1 it has grown tenfold": (float(np.abs(x[2.1][-1])), 9.0, 11.0),
-        "only 2.1 is said to be wrong": [w[2] for w in walks.values()] == [False] * 4 + [True],
+        "only 2.1 is flagged as wrong": [w[2] for w in walks.values()] == [False] * 4 + [True],
     }
     with style.house_style():
         figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
         steps = np.arange(n + 1)
         looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
         for r, (color, mark) in looks.items():
-            size = 5.5 if r == 0.2 else 3.2  # seen behind 1.8
+            size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
             left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
             right.semilogy(
                 steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
@@ -114,7 +114,7 @@ def fig2_step_lengths(module):
 
 
 def fig3_two_valleys(module):
-    """A function with two minima: start and step length decide."""
+    """A function with two minima: start and learning rate decide."""
 
     def f(x):
         return float((np.float64(x) * x - 1.0) ** 2 + 0.2 * x)
@@ -128,12 +128,12 @@ def fig3_two_valleys(module):
     long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
     near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
     facts = {
-        "from 0 the walk ends on the left": (float(short_left[-1] - left_end), -1e-6, 1e-6),
+        "from 0 the run ends on the left": (float(short_left[-1] - left_end), -1e-6, 1e-6),
         "from 0.1 it ends on the right": (float(short_right[-1] - right_end), -1e-6, 1e-6),
-        "the hump lies between 0 and 0.1": (float(hump), 0.0, 0.1),
-        "the walk from 0 ends deeper": bool(f(short_left[-1]) < f(short_right[-1])),
+        "the local maximum lies between 0 and 0.1": (float(hump), 0.0, 0.1),
+        "the run from 0 ends lower": bool(f(short_left[-1]) < f(short_right[-1])),
         "from 1.7 with 0.05 it ends on the right": (float(near[-1] - right_end), -1e-6, 1e-6),
-        "from 1.7 with 0.15 the first step crosses the hump": bool(long[1] < hump),
+        "from 1.7 with 0.15 the first step crosses the maximum": bool(long[1] < hump),
         "and ends on the left": (float(long[-1] - left_end), -1e-6, 1e-6),
     }
     grid = np.linspace(-1.65, 1.8, 300)
@@ -141,7 +141,7 @@ def fig3_two_valleys(module):
         figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
         shown = (
             (
-                "short steps, tau = 0.05",
+                "small learning rate, tau = 0.05",
                 (short_left, BLUE, "o", "from 0"),
                 (short_right, ORANGE, "s", "from 0.1"),
             ),
@@ -174,7 +174,7 @@ START = np.array([-2.0, 0.55])
 
 
 def fig4_zigzag(module):
-    """A long valley: zig-zag, best fixed step, momentum."""
+    """An ill-conditioned quadratic: zig-zag, best learning rate, momentum."""
 
     def f(x):
         return float(0.5 * x @ (BOWL * x))
@@ -195,9 +195,9 @@ def fig4_zigzag(module):
         "the steep coordinate changes sign in each step": bool(
             (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all()
         ),
-        "the flat one creeps along one side": bool((zigzag[:, 0] < 0.0).all()),
+        "the flat one converges from one side": bool((zigzag[:, 0] < 0.0).all()),
         "the factor per step is 19/21 within 2 %": (rate * 21.0 / 19.0, 0.98, 1.02),
-        "just above the bound the walk goes wrong": bool(wrong[2]),
+        "just above the bound it diverges": bool(wrong[2]),
         "after 40 steps momentum is sixty thousand times nearer": (
             float(size["fixed"][-1] / size["ball"][-1]),
             5.5e4,
@@ -216,7 +216,7 @@ def fig4_zigzag(module):
     with style.house_style():
         figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
         for axes, walk, color, mark, title in (
-            (a, fixed, ORANGE, "s", "fixed step 2 / (1 + 20)"),
+            (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
             (b, ball, BLUE, "o", "momentum, beta = 0.403"),
         ):
             axes.contour(
@@ -238,7 +238,7 @@ def fig4_zigzag(module):
 
 
 def fig5_adam(module):
-    """Adam's first steps, and what happens when the loss is measured in other units."""
+    """The first steps of Adam, and the effect of other units of the loss."""
     n, tau = 200, 0.05
 
     def grad_of(scale):
@@ -259,7 +259,7 @@ def fig5_adam(module):
             0.0,
             1.2,
         ),
-        "gradient descent at its best step is nearer all the way": bool(
+        "gradient descent at its best rate is nearer all the way": bool(
             (size["gradient descent"][1:] < size["Adam"][1:]).all()
         ),
         "after 100 steps it is a hundred times nearer": (
@@ -272,7 +272,7 @@ def fig5_adam(module):
             0.0,
             1e-3,
         ),
-        "the flat and the steep way get equal first steps": (
+        "the flat and the steep coordinate have equal first steps": (
             float(first[0] / first[1]),
             0.999,
             1.001,
@@ -298,12 +298,12 @@ def fig5_adam(module):
         a.set(
             xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate"
         )
-        a.set_title("the way")
+        a.set_title("iterates")
         a.legend(loc="lower right")
         b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
         b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
         b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
-        b.set_title("Adam's steps")
+        b.set_title("steps of Adam")
         b.legend(loc="upper right")
         c.semilogy(size["Adam"], color=BLUE)
         c.semilogy(size["gradient descent"], color=ORANGE)
@@ -315,7 +315,7 @@ def fig5_adam(module):
 
 
 def fig6_armijo(module):
-    """Step lengths tried by backtracking along one direction."""
+    """Step sizes tried by backtracking along one direction."""
 
     def f(x):
         return float(np.log(np.cosh(3.0 * x[0])) + 0.2 * x[0] ** 2)
@@ -344,7 +344,7 @@ def fig6_armijo(module):
         "it tries 1.6, 0.96, 0.576 and 0.3456": bool(
             len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9)
         ),
-        "the last try is the answer": (float(tau / tried[-1]), 0.999999, 1.000001),
+        "the last try is the result": (float(tau / tried[-1]), 0.999999, 1.000001),
         "the loss falls": bool(along(tau) < f(x)),
         "with c = 1e-4 it would have taken 0.576": (float(cheap), 0.5759, 0.5761),
     }
@@ -364,11 +364,11 @@ def fig6_armijo(module):
             color=RED_,
             ms=8,
             mec="white",
-            label="tried and refused",
+            label="tried and rejected",
         )
         axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
         axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
-        axes.set(xlabel="step length tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
+        axes.set(xlabel="step size tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
         axes.legend(loc="upper center", ncols=2)
         axes.grid(visible=True)
     return figure, facts
@@ -398,36 +398,36 @@ RED_FACTS = {
         "0.2 and 1.8 are equally fast": "clipped_step",
         "at 2 the distance stays 1": "clipped_step",
         "at 2.1 it has grown tenfold": "clipped_step",
-        "only 2.1 is said to be wrong": "clipped_step",
+        "only 2.1 is flagged as wrong": "clipped_step",
     },
     "fig3_two_valleys": {
-        "from 0 the walk ends on the left": "uphill",
+        "from 0 the run ends on the left": "uphill",
         "from 0.1 it ends on the right": "uphill",
-        "the walk from 0 ends deeper": "uphill",
+        "the run from 0 ends lower": "uphill",
         "from 1.7 with 0.05 it ends on the right": "no_tau",
-        "from 1.7 with 0.15 the first step crosses the hump": "clipped_step",
+        "from 1.7 with 0.15 the first step crosses the maximum": "clipped_step",
         "and ends on the left": "stale_gradient",
     },
     "fig4_zigzag": {
         "the steep coordinate changes sign in each step": "unit_steps",
-        "the flat one creeps along one side": "unit_steps",
+        "the flat one converges from one side": "unit_steps",
         "the factor per step is 19/21 within 2 %": "aliased_trail",
-        "just above the bound the walk goes wrong": "unit_steps",
+        "just above the bound it diverges": "unit_steps",
         "after 40 steps momentum is sixty thousand times nearer": "forgets_velocity",
     },
     "fig5_adam": {
         "the first step is tau in each coordinate": "no_second_correction",
         "a thousandfold gradient moves no point by more than 1e-5": "no_square_root",
         "in no coordinate is a step longer than 1.2 tau": "no_second_correction",
-        "gradient descent at its best step is nearer all the way": "unit_steps",
+        "gradient descent at its best rate is nearer all the way": "unit_steps",
         "after 100 steps it is a hundred times nearer": "unit_steps",
         "after 200 steps it is within 0.001 of the minimum": "swapped_betas",
-        "the flat and the steep way get equal first steps": "shared_scale",
+        "the flat and the steep coordinate have equal first steps": "shared_scale",
     },
     "fig6_armijo": {
         "all tries but the last lie above the line": "no_promise",
         "it tries 1.6, 0.96, 0.576 and 0.3456": "ignores_tau0",
-        "the last try is the answer": "one_too_short",
+        "the last try is the result": "one_too_short",
         "the loss falls": "wrong_promise",
         "with c = 1e-4 it would have taken 0.576": "one_too_short",
     },
@@ -435,8 +435,8 @@ RED_FACTS = {
 RED = {figure: next(iter(facts.values())) for figure, facts in RED_FACTS.items()}
 # Facts that do not depend on the module: what its results are compared with.
 HELD = {
-    "fig1_two_errors": {"forward differences have slope 1": "the twin, computed here"},
-    "fig3_two_valleys": {"the hump lies between 0 and 0.1": "a root of the derivative"},
+    "fig1_two_errors": {"forward differences have slope 1": "computed here"},
+    "fig3_two_valleys": {"the local maximum lies between 0 and 0.1": "a root of the derivative"},
     "fig4_zigzag": {
         "tau is 0.134": "chosen by the figure",
         "beta is 0.403": "chosen by the figure",

@@ -40,7 +40,7 @@ def graph_axes(figure, left, top, width, height):
 
 
 def circle(axes, at, label, value="", gradient=""):
-    """A node: what it is inside, its value above and its gradient below."""
+    """A node: its label inside, its value above and its gradient below."""
     box = {"boxstyle": "circle,pad=0.35", "fc": "white", "ec": INK, "lw": 1.4}
     axes.text(*at, label, ha="center", va="center", fontsize=TEXT + 1.5, zorder=4, bbox=box)
     bold = {"ha": "center", "fontsize": TEXT, "fontweight": "bold"}
@@ -49,7 +49,7 @@ def circle(axes, at, label, value="", gradient=""):
 
 
 def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
-    """An arrow from an input to its user, with a text beside it."""
+    """An arrow from an input to its user, with a label beside it."""
     axes.add_patch(
         FancyArrowPatch(
             start,
@@ -89,7 +89,7 @@ def key(axes, x, y):
 
 
 def slopes_of(user, source):
-    """Slopes noted by `user` for each of its uses of `source`."""
+    """Local derivatives stored by `user` for each of its uses of `source`."""
     return [slope for node, slope in user.inputs if node is source]
 
 
@@ -99,7 +99,7 @@ def first_slope(user, source):
 
 
 def fig1_worked_graph(module):
-    """(x + y) z with values, slopes and gradients."""
+    """(x + y) z with values, local derivatives and gradients."""
     x, y, z = module.Value(3.0), module.Value(4.0), module.Value(5.0)
     a = x + y
     f = a * z
@@ -125,7 +125,7 @@ def fig1_worked_graph(module):
 
 
 def recorded_uses(module, root):
-    """How many contributions `backward` adds up, and how many values there are."""
+    """The number of contributions that `backward` adds, and the number of values."""
     order = module.topo_order(root)
     return sum(len(node.inputs) for node in order), len(order)
 
@@ -149,12 +149,14 @@ def fig2_cost(module):
     with house_style():
         figure = new_figure(WIDTH, 2.9)
         left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="differences")
+        left.loglog(
+            counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="finite differences"
+        )
         left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
         left.set(
             title="work for a gradient",
             xlabel="inputs",
-            ylabel="operations for each value",
+            ylabel="operations per value",
             ylim=(0.3, 2000),
         )
         right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
@@ -167,7 +169,7 @@ def fig2_cost(module):
             axes.grid(True, axis="y")
     facts = {
         "backward adds less than two contributions for each value": bool(share.max() < 2.0),
-        "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
+        "and the number of inputs has little effect": (share[-1] / share[1], 0.8, 1.25),
         "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
         "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
     }
@@ -175,7 +177,7 @@ def fig2_cost(module):
 
 
 def fig3_kink(module):
-    """max(x, 2): the value, and its derivative by the engine and by differences."""
+    """max(x, 2): the value, and its derivative from the engine and by finite differences."""
     where = np.concatenate([np.linspace(1.0, 1.99, 50), [2.0], np.linspace(2.01, 3.0, 50)])
     h, slopes, values = 0.2, [], []
     for number in where:
@@ -204,7 +206,7 @@ def fig3_kink(module):
         right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
         right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
         right.set(
-            title="its derivative by x",
+            title="its derivative with respect to x",
             xlabel="x",
             xticks=[1, 2, 3],
             yticks=[0, 0.5, 1],
@@ -217,8 +219,8 @@ def fig3_kink(module):
             (slopes[where < 2] == 0).all() and (slopes[where > 2] == 1).all()
         ),
         "at the tie x gets 0 and the other input 1": x.grad == 0.0 and two.grad == 1.0,
-        "differences give 1/2 at the tie": (steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
-        "both agree further than a step from the kink": bool(
+        "finite differences give 1/2 at the tie": (steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
+        "both agree farther than a step from the kink": bool(
             np.allclose(slopes[far], steps[far], atol=1e-9)
         ),
     }
@@ -226,7 +228,7 @@ def fig3_kink(module):
 
 
 def levels(root):
-    """Level by level from the root: the order that is not good enough, root last."""
+    """Level by level from the root: the order that fails, root last."""
     order, seen = [root], {root}
     for node in order:
         for source, _ in node.inputs:
@@ -263,7 +265,7 @@ def fig4_order(module):
             _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
-        "the engine's gradient agrees with differences": (
+        "the engine's gradient agrees with finite differences": (
             gradients["every user first"]["x"] / right,
             1 - 1e-6,
             1 + 1e-6,
@@ -332,7 +334,7 @@ def fig5_uses_add_up(module):
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
         "the value is 34": (f.data, 34.0, 34.0),
-        "the uses bring 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
+        "the uses contribute 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
         "x gets 11": (x.grad, 11.0, 11.0),
         "the tangent of slope 11 touches": bend < 2e-4,
         "a line of slope 1 cuts through": (
@@ -344,7 +346,7 @@ def fig5_uses_add_up(module):
 
 
 def fig6_steps(module):
-    """What grad_check says of a right gradient and of one that is 1 % off, by the step."""
+    """The error that grad_check reports for a right gradient and for one 1 % too long."""
     place = np.array([0.3, -0.8, 1.2, 0.5])
 
     def f(x, factor=1.0):
@@ -366,11 +368,11 @@ def fig6_steps(module):
         figure = new_figure(WIDTH, 3.0)
         axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
         axes.axhline(1e-6, color=DARK_RED, lw=1.2)
-        axes.text(3.5, 1e-6, "accepted below", color=DARK_RED, fontsize=SMALL, va="center")
+        axes.text(3.5, 1e-6, "passes below", color=DARK_RED, fontsize=SMALL, va="center")
         axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
         axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
         axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
-        axes.text(3.5, 1e-2, "gradient 1 % off", color=BLUE, fontsize=SMALL, va="center")
+        axes.text(3.5, 1e-2, "gradient 1 % too long", color=BLUE, fontsize=SMALL, va="center")
         axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
         axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
         axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
@@ -382,7 +384,7 @@ def fig6_steps(module):
     }
     facts = {
         "at 1e-5 a right gradient is a thousand times below the limit": right[at[-5]] < 1e-9,
-        "a step of 1e-12 would refuse it": right[at[-12]] > 1e-6,
+        "with a step of 1e-12 it would fail": right[at[-12]] > 1e-6,
         "ten times the step, a hundred times the truncation": (
             right[at[-2]] / right[at[-3]],
             90.0,
@@ -405,7 +407,7 @@ def blurred(texels):
 
 
 def fig7_picture(module):
-    """The gradient of a picture's error, drawn as a picture."""
+    """The gradient of the error of an image, shown as an image."""
     row, column = np.mgrid[0:12, 0:16]
     target = 0.2 + 0.6 * ((row - 5.5) ** 2 + (column - 7.5) ** 2 < 17)
     start = np.full(target.shape, 0.45)
@@ -431,7 +433,7 @@ def fig7_picture(module):
     with house_style():
         figure = new_figure(WIDTH, 1.85)
         for k, (name, picture) in enumerate(
-            (("texels", start), ("should be seen", target), ("after one step", after))
+            (("texels", start), ("target", target), ("after one step", after))
         ):
             axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
             axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
@@ -439,7 +441,7 @@ def fig7_picture(module):
             axes.set(xticks=[], yticks=[])
         top = float(np.abs(by_pixel).max()) or 1.0
         for k, (name, picture) in enumerate(
-            (("dL / d seen", by_pixel), ("dL / d texels", by_texel))
+            (("dL / d pixels", by_pixel), ("dL / d texels", by_texel))
         ):
             axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
             image = axes.imshow(
@@ -453,12 +455,12 @@ def fig7_picture(module):
         bar.set_ticks([-0.5, 0.0, 0.5])
         bar.ax.tick_params(labelsize=8)
     facts = {
-        "negative where the picture is too dark": bool((by_texel[4:8, 6:10] < 0).all()),
+        "negative where the image is too dark": bool((by_texel[4:8, 6:10] < 0).all()),
         "positive where it is too bright": bool((by_texel[[0, -1]] > 0).all()),
-        "by what is seen there are two values": len(np.unique(by_pixel.round(12))) == 2,
-        "by the texels there are more": len(np.unique(by_texel.round(12))) > 2,
+        "with respect to pixels there are two values": len(np.unique(by_pixel.round(12))) == 2,
+        "with respect to texels there are more": len(np.unique(by_texel.round(12))) > 2,
         "their sums agree": (by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
-        "it agrees with differences": (by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
+        "it agrees with finite differences": (by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
         "a step against it lowers the loss": (loss_of(after)[0].data / loss.data, 0.0, 0.9),
     }
     return figure, facts

@@ -21,10 +21,10 @@ from photograd_course.viz.style import RED as CRIMSON
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
 STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
-# The mistakes of figure 4, in the words of its caption.
-LEFT_OUT, ADDED, NO_STEP = "hidden part left out", "hidden part added", "without dt"
-OWN_LIGHT, NO_EXP = "own light among the hidden", "σ dt for opacity"
-TAKES_IN = "T takes in the step"
+# The mistakes of figure 4, as its caption names them.
+LEFT_OUT, ADDED, NO_STEP = "no occlusion term", "occlusion term added", "without dt"
+OWN_LIGHT, NO_EXP = "own light in occlusion", "σ dt for opacity"
+TAKES_IN = "T includes the step"
 
 
 def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
@@ -44,7 +44,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "T never rises": bool((np.diff(T) <= 0).all()),
         "T ends at 0.02 or so": (float(T_end), 0.01, 0.03),
-        "weights and T_end add up to 1": (float(w.sum() + T_end), 1 - 1e-12, 1 + 1e-12),
+        "weights and T_end sum to 1": (float(w.sum() + T_end), 1 - 1e-12, 1 + 1e-12),
         "the dense cloud has less weight than the thin one": (
             float(w[dense].sum() / w[thin].sum()),
             0.1,
@@ -64,7 +64,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
         panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
         panels[1].set(ylabel="T in front", ylim=(0, 1.05))
         panels[2].bar(x, w, width=dt, color=BLUE)
-        panels[2].set(ylabel="weight w", xlabel="distance from the eye [m]", xlim=(0, 6))
+        panels[2].set(ylabel="weight w", xlabel="distance from the camera [m]", xlim=(0, 6))
         for axes in panels:
             plain_axes(axes)
             axes.set_axisbelow(True)
@@ -72,7 +72,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
-    """Error of the pixel against the number of steps, for four ways to weigh a step."""
+    """Error of the pixel against the number of steps, for four weights of a step."""
     counts = 2 ** np.arange(3, 10)
     fine = 8192
     right = _cloud_pixel(lambda s, c, dt: _pixel(module, s, c, dt), fine)
@@ -106,7 +106,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
             0,
             0.1,
         ),
-        "both are thousands of times as far off at 256 steps": (
+        "both errors are thousands of times larger at 256 steps": (
             shortcuts / max(at_256[names[0]], 1e-300),
             2000,
             1e6,
@@ -137,7 +137,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative of a pixel by extinction along the ray of figure 1, in its two parts."""
+    """Derivative of a pixel with respect to extinction along the ray of figure 1, in two terms."""
     x, sigma, dt = _two_clouds()
     color = np.where(x < 3, 0.1, 0.95 - 0.12 * (x - 3))
     background = np.array([0.3])
@@ -146,7 +146,7 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         part[0] for part in module.composite_adjoint(*given, np.ones((1, 1)), np.zeros(1))
     )
     w = d_color[:, 0]
-    # The own part with all else black: nothing is hidden then.
+    # The own term, with everything else black: there is no occlusion term then.
     own = np.zeros(STEPS)
     for k in range(STEPS):
         alone = np.zeros((1, STEPS, 1))
@@ -160,11 +160,11 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     dark, bright = (sigma > 0.05) & (x < 3), (sigma > 0.05) & (x > 3)
     error = np.linalg.norm(d_sigma - differences) / np.linalg.norm(differences)
     facts: Facts = {
-        "the sum agrees with differences": (float(error), 0, 1e-7),
+        "the sum agrees with finite differences": (float(error), 0, 1e-7),
         "negative at each step of the dark cloud": (float(d_sigma[dark].max()), -10, -1e-9),
         "positive at each step of the bright cloud": (float(d_sigma[bright].min()), 1e-9, 10),
-        "a step never shows less of itself": (float(own.min()), 0, 1),
-        "what is hidden counts minus": (float(hidden.max()), -10, 0),
+        "the own term is never negative": (float(own.min()), 0, 1),
+        "the occlusion term is never positive": (float(hidden.max()), -10, 0),
         "weights sum to 1 - T_end": (
             float(w.sum() + _T_end(module, sigma, dt)),
             1 - 1e-9,
@@ -182,22 +182,22 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         axes.plot(x, d_sigma, color=INK)
         axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
         for text, place, color in (
-            ("shows more of itself", (4.1, 0.035), BLUE),
-            ("hides what is behind", (4.1, -0.038), ORANGE),
-            ("sum; dots: differences", (1.6, -0.034), INK),
+            ("own term", (4.1, 0.035), BLUE),
+            ("occlusion term", (4.1, -0.038), ORANGE),
+            ("sum; dots: finite differences", (1.3, -0.034), INK),
         ):
             axes.annotate(text, place, color=color, fontsize=8)
         axes.set(ylim=(-0.07, 0.07))
         low, high = axes.get_ylim()
         for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
             axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
-        axes.set(xlabel="distance from the eye [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
+        axes.set(xlabel="distance from the camera [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
         plain_axes(axes)
     return figure, facts
 
 
 def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
-    """Six wrong adjoints of a ray: how far off, and how well they point."""
+    """Six wrong adjoints of a ray: relative error and cosine."""
     rng = np.random.default_rng(8)
     rays, steps, length = 200, 24, 0.05
     sigma, color = rng.uniform(0.0, 3.0, (rays, steps)), rng.random((rays, steps, 3))
@@ -218,7 +218,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     subtle = (NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     worst = np.linalg.norm(right[few] - checked) / np.linalg.norm(checked)
     facts: Facts = {
-        "the right one agrees with differences to 1e-7": (float(worst), 0, 1e-7),
+        "the right one agrees with finite differences to 1e-7": (float(worst), 0, 1e-7),
         "the first two point elsewhere": (max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9),
         "the other four have cosines above 0.99": (min(cosine[k] for k in subtle), 0.99, 1.0001),
         "and are wrong by more than 10 %": (min(error[k] for k in subtle), 0.1, 20),
@@ -233,7 +233,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
         for row, name in enumerate(names):
             text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
             axes.annotate(text, (values[row], row), (5, 0), textcoords="offset points", va="center")
-        axes.set(xscale="log", xlim=(2, 40000), xlabel="distance from the right one [%]")
+        axes.set(xscale="log", xlim=(2, 40000), xlabel="relative error [%]")
         axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
         axes.set_axisbelow(True)
         axes.minorticks_off()
@@ -244,7 +244,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
-    """Two rays, their crossings of the planes of a box, and the stretches between them."""
+    """Two rays, their crossings of the planes of a box, and the intervals between them."""
     low, high = np.array([1.0, 1.0, -1.0]), np.array([4.0, 3.0, 1.0])
     origins = np.array([[0.0, 0.6, 0.0], [0.0, 0.2, 0.0]])
     directions = np.array([[1.0, 0.5, 0.0], [0.8, 2.6, 0.0]])
@@ -255,7 +255,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     overlap = [(max(p[0][0], p[1][0]), min(p[0][1], p[1][1])) for p in planes]
     facts: Facts = {
-        "the first ray passes where both stretches overlap": bool(
+        "the first ray hits where both intervals overlap": bool(
             np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0]
         ),
         "those of the second do not overlap": bool(overlap[1][0] > overlap[1][1]),
@@ -295,7 +295,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                     markerfacecolor="white",
                     markersize=5,
                 )
-                said = "between the " + "xy"[a] + " planes"
+                said = "in the " + "xy"[a] + " slab"
                 right.annotate(
                     said, (planes[r][a][0], rows), (0, 7), textcoords="offset points", fontsize=7.5
                 )
@@ -308,7 +308,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                     linewidth=4,
                     solid_capstyle="butt",
                 )
-            said = "in the box" if far[r] > near[r] else "never between all: misses"
+            said = "in the box" if far[r] > near[r] else "never in all slabs: misses"
             start = near[r] if far[r] > near[r] else 0.3
             right.annotate(
                 said,
@@ -325,7 +325,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
-    """A photographed volume, a wrong guess, and the derivative of their difference by sigma."""
+    """A photographed volume, a wrong guess, and the derivative of the loss w.r.t. sigma."""
     shape, low, high = (24, 24, 24), -np.ones(3), np.ones(3)
     truth, guess, parts = _ball_and_ring(shape)
     pixels = 60
@@ -378,12 +378,12 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
         for axes in panels:
             axes.set(xticks=[], yticks=[])
         bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
-        bar.set_ticklabels(["−1\nadd σ", "0", "take σ\naway  1"])
+        bar.set_ticklabels(["−1\nadd σ", "0", "remove\nσ  1"])
     return figure, facts
 
 
 def _two_clouds() -> tuple[Array, Array, Array]:
-    """Middles, extinctions and lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
+    """Midpoints, extinctions, lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
     dt = np.full(STEPS, 6.0 / STEPS)
     x = np.cumsum(dt) - dt / 2
     bump = [np.clip(1 - ((x - middle) / 1.0) ** 2, 0, None) for middle in (1.5, 4.5)]
@@ -391,7 +391,7 @@ def _two_clouds() -> tuple[Array, Array, Array]:
 
 
 def _weights(module: ModuleType, sigma: Array, dt: Array) -> tuple[Array, float]:
-    """Weights of a ray's steps, by giving each step a channel of its own; T_end."""
+    """Weights of the steps of a ray, with one channel per step; T_end."""
     steps = len(sigma)
     pixel, T_end = module.composite(sigma[None], np.eye(steps)[None], dt[None], np.zeros(steps))
     return pixel[0], float(T_end[0])
@@ -413,7 +413,7 @@ def _T(s: Array) -> Array:
 
 
 def _cloud_pixel(way: object, n: int) -> float:
-    """The pixel of a smooth cloud of changing color by one way to weigh its steps."""
+    """The pixel of a smooth cloud of varying color by one way to weight its steps."""
     x = (np.arange(n) + 0.5) / n
     sigma = 3 * np.exp(-(((x - 0.4) / 0.3) ** 2))
     return float(way(sigma, 0.6 + 0.4 * np.sin(4 * x), 1 / n))  # type: ignore[operator]
@@ -427,7 +427,7 @@ def _differences(
     background: Array,
     d_pixel: Array | None = None,
 ) -> Array:
-    """Central differences of <pixel, d_pixel> by each extinction; of one ray without its axis."""
+    """Central differences of <pixel, d_pixel> per extinction; of one ray without its axis."""
     d = np.ones((len(sigma), color.shape[2])) if d_pixel is None else d_pixel
     result = np.zeros(sigma.shape)
     for k in range(sigma.shape[1]):
@@ -509,33 +509,33 @@ RED_FACTS = {
     "fig1_ray": {
         "T never rises": "T_end_opacity",
         "T ends at 0.02 or so": "no_step",
-        "weights and T_end add up to 1": "inclusive",
+        "weights and T_end sum to 1": "inclusive",
         "the dense cloud has less weight than the thin one": "no_occlusion",
         "its front has more weight than its back": "back_to_front",
     },
     "fig2_order": {
         "equation (7): a quarter with each halving": "riemann",
         "the shortcuts halve only": "no_step",
-        "both are thousands of times as far off at 256 steps": "inclusive",
+        "both errors are thousands of times larger at 256 steps": "inclusive",
         "without dt the error doubles": "lecture",
     },
     "fig3_adjoint": {
-        "the sum agrees with differences": "adjoint_off_by_one",
+        "the sum agrees with finite differences": "adjoint_off_by_one",
         "negative at each step of the dark cloud": "adjoint_no_occlusion",
         "positive at each step of the bright cloud": "adjoint_only_occlusion",
-        "a step never shows less of itself": "adjoint_sign",
-        "what is hidden counts minus": "adjoint_occlusion_added",
+        "the own term is never negative": "adjoint_sign",
+        "the occlusion term is never positive": "adjoint_occlusion_added",
         "weights sum to 1 - T_end": "adjoint_color_no_T",
     },
     "fig4_wrong": {
-        "the right one agrees with differences to 1e-7": "adjoint_inclusive",
+        "the right one agrees with finite differences to 1e-7": "adjoint_inclusive",
         "the first two point elsewhere": "adjoint_no_occlusion",
         "the other four have cosines above 0.99": "adjoint_sign",
         "and are wrong by more than 10 %": "adjoint_missing_step",
         "without dt the cosine is 1": "adjoint_riemann",
     },
     "fig5_box": {
-        "the first ray passes where both stretches overlap": "box_first_entry",
+        "the first ray hits where both intervals overlap": "box_first_entry",
         "it misses": "box_misses_kept",
     },
     "fig6_view": {

@@ -23,7 +23,7 @@ Array = np.ndarray
 
 
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative of a loss by the extinction of a step that is not there, by its color."""
+    """Derivative of a loss with respect to the extinction of an absent step, over its color."""
     colors = np.linspace(0, 1, 21)
     slopes = np.array([_gap(module, 0.0, c)[1][3] for c in colors])
     by_color = np.array([np.abs(_gap(module, 0.0, c)[1][:3]).max() for c in colors])
@@ -38,8 +38,8 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
             -0.01,
             0.01,
         ),
-        "differences agree": (float(np.abs(slopes - apart).max()), 0, 1e-5),
-        "the derivative by color is zero": (float(by_color.max()), 0, 0),
+        "finite differences agree": (float(np.abs(slopes - apart).max()), 0, 1e-5),
+        "the derivative with respect to color is zero": (float(by_color.max()), 0, 0),
         "bright: the loss falls at first": bool(curves[0.9][1] < curves[0.9][0]),
         "dim: it rises": bool((np.diff(curves[0.3]) > 0).all()),
     }
@@ -50,8 +50,8 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
         left.axvline(behind, color=GRAY, linewidth=0.8, linestyle="--")
         left.plot(colors, slopes, color=BLUE)
         left.plot(colors[::2], apart[::2], "o", color=INK, markersize=3)
-        left.annotate("seen behind", (behind, slopes.min()), (4, 0), textcoords="offset points")
-        left.set(xlabel="color that it is given", ylabel="∂L/∂σ at σ = 0")
+        left.annotate("color behind", (behind, slopes.min()), (4, 0), textcoords="offset points")
+        left.set(xlabel="color of the step", ylabel="∂L/∂σ at σ = 0")
         for c, color in ((0.9, BLUE), (0.3, ORANGE)):
             right.plot(sigma, curves[c], color=color)
             right.annotate(
@@ -81,7 +81,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
     growth = shells[-1] / shells[-2]
     half = len(module.octree_from_dense(np.indices((n, n, n))[0] < n // 2))
     facts: Facts = {
-        "one odd cell costs 8 nodes a level": bool(
+        "one full cell costs 8 nodes per level": bool(
             (np.array(ones) == 1 + 8 * np.log2(sizes)).all()
         ),
         "a shell about four times as many with each doubling": (float(growth), 3.4, 4.6),
@@ -122,7 +122,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
-    """Rays through a slice of the tree: which samples are read, where leaves are asked for."""
+    """Rays through a slice of the tree: evaluated samples, and lookups of leaves."""
     n, count = 32, 64
     full = _shell(n)
     tree = module.octree_from_dense(full)
@@ -145,12 +145,12 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     occupied = inside.mean() * count * len(first)
     facts: Facts = {
         "exactly the samples in full cells": bool((wanted == right).all()),
-        "read samples cover at most 1.3 times the occupied length": (
+        "evaluated samples cover at most 1.3 times the occupied length": (
             float(wanted.sum() / occupied),
             0.7,
             1.3,
         ),
-        "fewer questions than a third of the samples": (len(questions) / right.size, 0.01, 1 / 3),
+        "fewer lookups than a third of the samples": (len(questions) / right.size, 0.01, 1 / 3),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 4.1), layout="constrained")
@@ -182,7 +182,7 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
-    """Slots that a search looks at, by how full the table is."""
+    """Slots that a search visits, by the load factor."""
     rng = np.random.default_rng(5)
     slots = 1009
     loads = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9])
@@ -204,8 +204,8 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
             0,
             0.25,
         ),
-        "half full: a miss looks at less than 3": (float(missing[2]), 1.0, 3.0),
-        "nine tenths full: at more than 40": (float(missing[5]), 40.0, 200.0),
+        "half full: a miss visits fewer than 3": (float(missing[2]), 1.0, 3.0),
+        "nine tenths full: more than 40": (float(missing[5]), 40.0, 200.0),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
@@ -226,7 +226,7 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
         axes.annotate(
             "in the table", (0.9, found[-1]), (8, -3), textcoords="offset points", color=BLUE
         )
-        axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
+        axes.set(xlabel="load factor", ylabel="slots visited", xlim=(0, 1.05))
         axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
         axes.minorticks_off()
         plain_axes(axes)
@@ -234,12 +234,12 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative by extinction where voxels are, and what it would be where there are none."""
+    """The derivative with respect to extinction of existing voxels, and of absent ones."""
     n = 16
     voxels, values = _object(n)
     rays = _cameras(12, 10)
     target = module.render(values, _samples(module, n, voxels, rays))
-    # The guess lacks the ring: only the ball was kept.
+    # The guess lacks the ring: it has only the ball.
     ball = values[:, 0] > 0.6
     some, kept = voxels[ball], values[ball]
     samples = _samples(module, n, some, rays)
@@ -247,7 +247,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     _, d_kept = module.loss_and_grad(kept, samples, target)
     every = np.argwhere(np.ones((n, n, n), bool))
     at = some @ np.array([n * n, n, 1])
-    # Next to what exists a new color would mix into samples of today: those voxels stay black.
+    # Next to existing voxels a new color would change samples: those new voxels are black.
     beside = module.prune_and_dilate(n, some, np.arange(len(some)), np.ones(len(some)), 0.0, 1)
     far = np.ones(n**3, bool)
     far[beside @ np.array([n * n, n, 1])] = False
@@ -273,19 +273,19 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
             0,
             1e-12,
         ),
-        "bright: over 90 % of the missing ring is asked for": (
+        "bright: negative in over 90 % of the missing ring": (
             float((maps[0][ring] < 0).mean()),
             0.9,
             1.0,
         ),
-        "black: less than half of it": (float((maps[1][ring] < 0).mean()), 0.0, 0.5),
+        "black: in less than half of it": (float((maps[1][ring] < 0).mean()), 0.0, 0.5),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 2.6), layout="constrained")
         panels = figure.subplots(1, 3)
         own = np.zeros(n**3)
         own[at] = d_kept[:, 3]
-        # Roots, so that the small ones show as well.
+        # Roots, so that small values show as well.
         ends = [np.sign(each) * np.sqrt(np.abs(each)) for each in (own, *maps)]
         end = max(float(np.abs(ends[1][far]).max()), 1e-300)
         titles = ("voxels that exist", "all, the new ones bright", "all, the new ones black")
@@ -301,7 +301,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
-    """What is pruned too early is lost; what is left may grow."""
+    """Voxels pruned too early are lost; dilation restores them."""
     n, total, threshold = 8, 24, 0.06
     voxels, values = _rods(16)
     rays, unseen, shown = _cameras(10, 6), _cameras(6, 8, 1.0), _cameras(3, 40, 0.5)
@@ -325,7 +325,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     gap = np.array(scores[1]) - scores[0]
     facts: Facts = {
         "pruned every 3 steps it loses more than 5 dB": (float(gap[0]), 5.0, 30.0),
-        "growing, it is never below all voxels": (float(min(scores[1]) - dense), 0.0, 10.0),
+        "dilated, it is never below all voxels": (float(min(scores[1]) - dense), 0.0, 10.0),
         "with less than three quarters of the voxels": (len(kept[1, 3][0]) / n**3, 0.05, 0.75),
         "the later it is pruned, the less is lost": bool((np.diff(gap) < 0).all()),
     }
@@ -337,7 +337,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         pictures = (
             ("truth", module.render(values, _samples(module, 16, voxels, view))),
             ("pruned every 3 steps", _picture(module, n, kept[0, 3], view)),
-            ("pruned and grown", _picture(module, n, kept[1, 3], view)),
+            ("pruned and dilated", _picture(module, n, kept[1, 3], view)),
         )
         for k, (title, colors) in enumerate(pictures):
             axes = figure.add_subplot(grid[0, k])
@@ -348,7 +348,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         axes.annotate(
             "all voxels, never pruned", (after[0], dense), (30, -12), textcoords="offset points"
         )
-        for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
+        for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and dilated")):
             axes.plot(after, scores[grow], color=color, marker="o", markersize=4)
             axes.annotate(
                 name,
@@ -360,7 +360,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set(
             xscale="log",
             xlabel="steps before each pruning (24 in all)",
-            ylabel="PSNR of new views [dB]",
+            ylabel="PSNR of held-out views [dB]",
             xlim=(2.7, 22),
         )
         axes.set_xticks(after, [str(k) for k in after])
@@ -370,7 +370,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def _gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
-    """(loss, derivative by the middle step's four numbers) on the ray of the warm-up."""
+    """(loss, gradient of the four numbers of the middle step) on the ray of the warm-up."""
     values = np.array([[0.2] * 3 + [1.0], [color] * 3 + [sigma], [0.8] * 3 + [2.0]])
     row = np.full((8, 3), -1)
     row[0] = 0, 1, 2
@@ -382,7 +382,7 @@ def _gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
 
 
 def _shell(n: int) -> Array:
-    """Cells through which a sphere passes."""
+    """Cells that a sphere crosses."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     away = np.linalg.norm(x - [0.05, -0.1, 0.0], axis=-1)
     return np.abs(away - 0.72) < 0.9 / n
@@ -391,7 +391,7 @@ def _shell(n: int) -> Array:
 def _leaves_in_slice(
     module: ModuleType, tree: Array, n: int, k: int
 ) -> list[tuple[tuple[float, float], float, bool]]:
-    """(lower corner, side, full) of the leaves that cells (i, j, k) lie in."""
+    """(lower corner, side, full) of the leaves that contain cells (i, j, k)."""
     cells = np.stack([*np.indices((n, n)).reshape(2, -1), np.full(n * n, k)], axis=1) + 0.5
     full, low, side = module.octree_leaf(tree, n, cells)
     rows = np.unique(np.column_stack([low[:, :2], side, full]), axis=0)
@@ -401,7 +401,7 @@ def _leaves_in_slice(
 def _looks(
     module: ModuleType, rng: np.random.Generator, slots: int, count: int
 ) -> tuple[float, float]:
-    """Mean number of slots that a search for voxels in the table and for others looks at."""
+    """Mean number of slots visited by searches for voxels in the table and for others."""
     voxels = np.unique(rng.integers(-500, 500, (2 * count + 2000, 3)), axis=0)
     voxels = rng.permutation(voxels)
     table = np.zeros((slots, 4), np.int64)
@@ -499,35 +499,35 @@ RED = {
 RED_FACTS = {
     "fig1_absent": {
         "the derivative changes its sign at the color seen behind": "back_first_channel",
-        "differences agree": "back_without_g",
-        "the derivative by color is zero": "back_without_g",
+        "finite differences agree": "back_without_g",
+        "the derivative with respect to color is zero": "back_without_g",
     },
     "fig2_octree": {
-        "one odd cell costs 8 nodes a level": "octree_empty_cut",
+        "one full cell costs 8 nodes per level": "octree_empty_cut",
         "a shell about four times as many with each doubling": "octree_never_merged",
         "at 32 less than a fifth of the cells": "octree_never_merged",
         "two halves are eight leaves": "octree_full_cut",
     },
     "fig3_skip": {
         "exactly the samples in full cells": "skip_one_too_far",
-        "read samples cover at most 1.3 times the occupied length": "skip_nothing",
-        "fewer questions than a third of the samples": "skip_each_sample",
+        "evaluated samples cover at most 1.3 times the occupied length": "skip_nothing",
+        "fewer lookups than a third of the samples": "skip_each_sample",
     },
     "fig4_hash": {
         "hits follow the formula to 15 % up to 0.7": "hash_backwards",
         "misses to 25 %": "hash_from_zero",
-        "half full: a miss looks at less than 3": "hash_from_zero",
-        "nine tenths full: at more than 40": "hash_from_zero",
+        "half full: a miss visits fewer than 3": "hash_from_zero",
+        "nine tenths full: more than 40": "hash_from_zero",
     },
     "fig5_lost": {
         "voxels without extinction change no pixel": "skip_stops_at_full",
         "those that exist get the same derivative": "back_to_the_last",
-        "bright: over 90 % of the missing ring is asked for": "back_without_g",
-        "black: less than half of it": "skip_stops_at_full",
+        "bright: negative in over 90 % of the missing ring": "back_without_g",
+        "black: in less than half of it": "skip_stops_at_full",
     },
     "fig6_topology": {
         "pruned every 3 steps it loses more than 5 dB": "fit_never_prunes",
-        "growing, it is never below all voxels": "fit_never_grows",
+        "dilated, it is never below all voxels": "fit_never_grows",
         "with less than three quarters of the voxels": "fit_never_prunes",
         "the later it is pruned, the less is lost": "fit_never_grows",
     },

@@ -23,8 +23,8 @@ def fig1_harmonics(module):
     odd = np.repeat([1, -1, 1, -1], [1, 3, 5, 7])
     facts = {
         "degree 0 is the same everywhere": (float(np.ptp(Y[:, 0])), 0, 1e-12),
-        "l = 1, m = 1 is negative towards +x": (float(east[3]), -1, -0.4),
-        "l = 1, m = 0 is positive towards +z": (float(pole[2]), 0.4, 1),
+        "l = 1, m = 1 is negative toward +x": (float(east[3]), -1, -0.4),
+        "l = 1, m = 0 is positive toward +z": (float(pole[2]), 0.4, 1),
         "odd degrees change sign at the opposite point, even ones do not": (
             float(np.abs(back - there * odd).max()),
             0,
@@ -47,7 +47,7 @@ def fig1_harmonics(module):
 
 
 def fig2_projection(module):
-    """A sky and what degrees 0, 1, 2 and 4 keep of it."""
+    """A sky and its projections to degree 0, 1, 2 and 4."""
     d, weights = module.quadrature(40)
     places, shape = _map(48)
     rows, shown = {}, [("the sky", _sky(places)[:, 0])]
@@ -61,14 +61,14 @@ def fig2_projection(module):
     four = rows[4][0][:, 0]
     peak = shown[-1][1]
     facts = {
-        "each degree comes closer": bool((np.diff(errors) < 0).all()),
-        "the mean is kept from the first": (max(abs(mean - 1) for mean in means), 0, 1e-9),
-        "degree 4 finds the lamp to 10 degrees": (
-            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP))),
+        "the error decreases with the degree": bool((np.diff(errors) < 0).all()),
+        "the mean is exact from the first": (max(abs(mean - 1) for mean in means), 0, 1e-9),
+        "degree 4 finds the light to 10 degrees": (
+            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LIGHT))),
             0,
             10,
         ),
-        "degree 4 keeps less than half of the lamp's peak": (
+        "degree 4 keeps less than half of the light's peak": (
             float(peak.max() / shown[0][1].max()),
             0.1,
             0.5,
@@ -107,7 +107,7 @@ def fig2_projection(module):
 
 
 def fig3_tangent(module):
-    """A function of direction, and its derivative by v as arrows, from two sides."""
+    """A function of direction, and its derivative with respect to v, from two sides."""
     c = np.random.default_rng(4).uniform(-1, 1, (16, 1))
     d, inside = _ball(61)
     at, _ = _ball(15)
@@ -156,9 +156,9 @@ def fig4_irradiance(module):
         errors.append(float(np.abs(found[degree] - brute).max() / mean))
     facts = {
         "nine coefficients are within 3 % of the mean": (errors[2], 0, 0.03),
-        "degree 1 is more than ten times as far off": (errors[1] / errors[2], 10, 100),
+        "the error of degree 1 is more than ten times as large": (errors[1] / errors[2], 10, 100),
         "degree 3 adds nothing": (float(np.abs(found[3] - found[2]).max()), 0, 1e-12),
-        "degree 4 comes closer than degree 2": (errors[4] / errors[2], 0, 0.9),
+        "the error of degree 4 is smaller than that of degree 2": (errors[4] / errors[2], 0, 0.9),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 3.3), layout="constrained")
@@ -191,7 +191,7 @@ def fig4_irradiance(module):
         axes = panels[1, 1]
         axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
         axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
-        axes.set(yscale="log", xlabel="kept up to degree", title="largest error, % of mean")
+        axes.set(yscale="log", xlabel="highest degree", title="largest error, % of mean")
         axes.spines[["top", "right"]].set_visible(False)
         axes = panels[1, 2]
         factors = [
@@ -213,7 +213,7 @@ def fig4_irradiance(module):
 
 
 def fig5_glyphs(module):
-    """What a step against the derivative does to the colors of a slice, by direction."""
+    """Change of the colors of a slice by a step against the derivative, by direction."""
     n, light = 12, np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
     density, c = _ball_scene(module, n, light)
     rays = _photographs(40, 16)
@@ -234,11 +234,7 @@ def fig5_glyphs(module):
     change = slice_ @ module.sh_basis(ring, 2).T
     strong = np.linalg.norm(slice_, axis=-1) > 0.3 * np.linalg.norm(slice_, axis=-1).max()
     facts = {
-        "cells that face the highlight get brighter towards it": (
-            float((gain > 0).mean()),
-            0.95,
-            1,
-        ),
+        "cells that face the highlight get brighter toward it": (float((gain > 0).mean()), 0.95, 1),
         "more than 80 % of the energy lies in or next to the ball": (
             float(energy[near].sum() / energy.sum()),
             0.8,
@@ -271,12 +267,12 @@ def fig5_glyphs(module):
         )
         axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
         axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
-        axes.set_title("what a step will do: red brightens, blue darkens")
+        axes.set_title("change by a step: red brightens, blue darkens")
     return figure, facts
 
 
 def fig6_coarse_to_fine(module):
-    """A new view by a fixed grid and coarse to fine; PSNR of new views against steps."""
+    """A held-out view by a fixed grid and coarse to fine; PSNR of such views against steps."""
     light = np.array([0.48, -0.6, 0.64])
     density, c = _ball_scene(module, 20, light, second=True)
     rays, unseen, large = _photographs(30, 6), _photographs(10, 6, 0.37), _photographs(3, 28, 0.9)
@@ -311,7 +307,11 @@ def fig6_coarse_to_fine(module):
             27,
             60,
         ),
-        "on new views the fixed grid gets worse after its best": (max(fixed) - fixed[-1], 0.5, 10),
+        "on held-out views the fixed grid gets worse after its best": (
+            max(fixed) - fixed[-1],
+            0.5,
+            10,
+        ),
         "degree 0 loses more than 2 dB": (fine[-1] - plain[-1], 2, 20),
     }
     with house_style():
@@ -330,7 +330,7 @@ def fig6_coarse_to_fine(module):
             axes.annotate(
                 name, (ends[-1], scores[-1]), (7, 0), textcoords="offset points", va="center"
             )
-        axes.set(xlabel="step", ylabel="PSNR of new views [dB]", xlim=(-0.5, 23.5))
+        axes.set(xlabel="step", ylabel="PSNR of held-out views [dB]", xlim=(-0.5, 23.5))
         axes.set_xticks(range(0, 19, 3))
         axes.grid(visible=True)
         axes.spines[["top", "right"]].set_visible(False)
@@ -368,7 +368,7 @@ def _show_ball(axes, values, inside, top):
 
 
 def _map(rows):
-    """Directions (N, 3) of a map of the sphere: angle to the right, z up, each cell alike large."""
+    """Directions (N, 3) of an equal-area map of the sphere: angle to the right, z up."""
     z = 1 - (np.arange(rows) + 0.5) * 2 / rows
     phi = (np.arange(2 * rows) + 0.5) * np.pi / rows
     z, phi = np.meshgrid(z, phi, indexing="ij")
@@ -376,16 +376,16 @@ def _map(rows):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3), z.shape
 
 
-LAMP = np.array([0.48, 0.64, 0.6])
+LIGHT = np.array([0.48, 0.64, 0.6])
 
 
 def _sky(d, sharp=25.0, pale=0.3):
-    """Radiance (N, 1): pale above, dark below, and a lamp, the smaller the sharper."""
-    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LAMP[:, None] - 1))
+    """Radiance (N, 1): pale above, dark below, and a light, smaller for a larger exponent."""
+    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LIGHT[:, None] - 1))
 
 
 def _ball_scene(module, n, light, second=False):
-    """A shiny ball, perhaps with a second one: density (n, n, n) and coefficients."""
+    """A glossy ball, perhaps with a second one: density (n, n, n) and coefficients."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
     radii = [0.6] if not second else [0.45, 0.3]
@@ -403,7 +403,7 @@ def _ball_scene(module, n, light, second=False):
 
 
 def _photographs(views, pixels, twist=0.0, away=3.2, view_angle=0.75):
-    """Rays of cameras spread evenly all around, that look at the middle."""
+    """Rays of cameras distributed uniformly around the center, at which they look."""
     height = 1 - (np.arange(views) + 0.5) * 2 / views
     phi = np.arange(views) * np.pi * (3 - np.sqrt(5)) + 2 * np.pi * twist
     ring = np.sqrt(1 - height**2)
@@ -447,16 +447,16 @@ RED = {
 # A mutant for each fact.
 RED_FACTS = {
     "fig1_harmonics": {
-        "l = 1, m = 1 is negative towards +x": "no_phase",
-        "l = 1, m = 0 is positive towards +z": "pole_along_y",
+        "l = 1, m = 1 is negative toward +x": "no_phase",
+        "l = 1, m = 0 is positive toward +z": "pole_along_y",
         "odd degrees change sign at the opposite point, even ones do not": "angle_once",
         "all but the first have mean zero": "recurrence_sign",
     },
     "fig2_projection": {
-        "each degree comes closer": "project_summed",
-        "the mean is kept from the first": "project_mean",
-        "degree 4 finds the lamp to 10 degrees": "recurrence_sign",
-        "degree 4 keeps less than half of the lamp's peak": "project_summed",
+        "the error decreases with the degree": "project_summed",
+        "the mean is exact from the first": "project_mean",
+        "degree 4 finds the light to 10 degrees": "recurrence_sign",
+        "degree 4 keeps less than half of the light's peak": "project_summed",
         "degree 4 is below zero on more than 10 % of the sphere": "start_of_ones",
     },
     "fig3_tangent": {
@@ -465,18 +465,18 @@ RED_FACTS = {
     },
     "fig4_irradiance": {
         "nine coefficients are within 3 % of the mean": "lobe_half",
-        "degree 1 is more than ten times as far off": "no_lobe",
+        "the error of degree 1 is more than ten times as large": "no_lobe",
         "degree 3 adds nothing": "lobe_flat",
-        "degree 4 comes closer than degree 2": "lobe_no_fourth",
+        "the error of degree 4 is smaller than that of degree 2": "lobe_no_fourth",
     },
     "fig5_glyphs": {
-        "cells that face the highlight get brighter towards it": "d_coefficients_without_g",
+        "cells that face the highlight get brighter toward it": "d_coefficients_without_g",
         "most of the larger glyphs have both colors": "recurrence_sign",
     },
     "fig6_coarse_to_fine": {
         "coarse to fine ends more than 4 dB above": "steps_at_last_level",
         "the fixed grid fits its own photographs to better than 27 dB": "uphill",
-        "on new views the fixed grid gets worse after its best": "coefficients_frozen",
+        "on held-out views the fixed grid gets worse after its best": "coefficients_frozen",
         "degree 0 loses more than 2 dB": "coefficients_cut",
     },
 }

@@ -28,7 +28,7 @@ BALLS = (
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
-    """Points of a Gaussian as the camera sees them with its ellipse; its width far outside."""
+    """Projected points of a Gaussian with its ellipse; its width far outside the image."""
     camera = _camera(np.array([0.0, 0.0, -4.0]), 64)
     cov, _ = module.covariance(np.array([[0.9, 0.3, -0.2, 0.5]]), np.log([[0.5, 0.15, 0.3]]))
     mean = np.array([[0.25, -0.15, 0.2]])
@@ -52,8 +52,12 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
             0,
             0.06,
         ),
-        "held, the width stays": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
-        "not held, it is more than twice as large in the end": (float(free[-1] / held[-1]), 2, 10),
+        "clamped, the width is constant": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
+        "not clamped, it is more than twice as large in the end": (
+            float(free[-1] / held[-1]),
+            2,
+            10,
+        ),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 3.0), layout="constrained")
@@ -63,8 +67,8 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
             left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
         left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
         left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
-        right.plot(slopes, free, "--", color=ORANGE, label="not held")
-        right.plot(slopes, held, color=BLUE, label="held")
+        right.plot(slopes, free, "--", color=ORANGE, label="not clamped")
+        right.plot(slopes, held, color=BLUE, label="clamped")
         right.axvline(limit, color=GRAY, linewidth=0.8)
         right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
         right.legend()
@@ -74,7 +78,7 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
-    """What one pixel sees of six splats: alpha, what is left in front of each, and the weight."""
+    """Six splats in one pixel: alpha, the transmittance in front of each, and the weight."""
     alpha = np.array([[0.35], [0.6], [0.25], [0.8], [0.5], [0.3]])
     depth = np.array([2.2, 1.4, 3.1, 2.7, 3.6, 1.8])
     count = len(alpha)
@@ -87,9 +91,9 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     left = float(module.composite(alpha, np.zeros((count, 3)), depth, np.ones(3))[0][0, 0])
     order = np.argsort(depth)
     facts: Facts = {
-        "weights and what is left add up to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
-        "the nearest weighs its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
-        "the most opaque one weighs a quarter of the nearest": (
+        "weights and T_end sum to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
+        "the weight of the nearest is its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
+        "the weight of the most opaque one is a quarter of that of the nearest": (
             float(weights[3] / weights[1]),
             0.23,
             0.27,
@@ -111,7 +115,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
-    """One splat over two stripes: what each pixel adds, and what more Gaussians are worth."""
+    """One splat over two stripes: the gradient of each pixel; fits with density control."""
     n = 16
     camera = _camera(np.array([0.0, 0.0, -2.0]), n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5).reshape(2, -1)
@@ -140,8 +144,12 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         for most in (0, 60)
     ]
     facts: Facts = {
-        "the sum along x is less than 5 % of the sizes": (float(signed[0] / total[0]), 0, 0.05),
-        "pull is the sum of the sizes": (
+        "the sum along x is less than 5 % of the sum of absolute values": (
+            float(signed[0] / total[0]),
+            0,
+            0.05,
+        ),
+        "the absolute gradient is the sum of absolute values": (
             float(total[0] / np.abs(pulls[:, 0]).sum()),
             1 - 1e-9,
             1 + 1e-9,
@@ -164,7 +172,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         )
         for k in (1, 2):
             left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-        left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
+        left.set(xticks=[], yticks=[], title="−gradient of the mean, per pixel")
         right.semilogy(curves[0], color=GRAY, label="four Gaussians")
         right.semilogy(curves[1], color=BLUE, label="up to sixty")
         right.set(xlabel="step", ylabel="loss")
@@ -174,7 +182,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
-    """A view that was not among the photographs, while it is learned."""
+    """A held-out view during the fit."""
     marks = (0, 20, 40, 80, STEPS)
     kept, found, _ = _fitted(module, marks)
     fine = _camera(_places(3, 1.0)[0], 96)
@@ -184,7 +192,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     scores = [_score(module, scene, new[0]) for scene in kept]
     facts: Facts = {
         "each frame is better than the one before": bool(np.all(np.diff(scores) > 0)),
-        "the last one has more than 26 dB on new views": (scores[-1], 26, 60),
+        "the last one has more than 26 dB on held-out views": (scores[-1], 26, 60),
         "it begins with 80 Gaussians": (float(new[1][0]), 80, 80),
         "it ends with more than 150": (float(len(found["means"])), 151, MOST),
     }
@@ -200,7 +208,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
-    """Where descent moves each Gaussian, how hard the pixels pull, and what is chosen for that."""
+    """Where gradient descent moves each mean, the absolute gradients, and the chosen ones."""
     (scene,), _, views = _fitted(module, (70,), 70)
     camera, truth = views[1]
     shown, back = module.picture(scene, camera, BLACK)
@@ -214,18 +222,18 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     predicted = 1e-5 * np.sum(slope**2) / np.abs(slope).max() * error[..., 0].size
     cov, _ = module.covariance(scene["quats"], scene["log_scales"])
     places, cov2d, depth, _ = module.project(scene["means"], cov, camera)
-    # The error beneath a Gaussian, as its own weights count it.
+    # The error below a Gaussian, weighted with its own weights.
     pixels = np.stack(np.mgrid[0:SIZE, 0:SIZE][::-1], axis=-1).reshape(-1, 2) + 0.5
     alpha, _ = module.screen_alpha(places, cov2d, scene["opacity_logits"], pixels)
     beneath = alpha @ np.sum(error**2, axis=2).ravel() / np.maximum(alpha.sum(axis=1), 1e-9)
     facts: Facts = {
-        "a small step along all arrows lowers the loss as the gradient says": (
+        "a small step along all arrows lowers the loss as the gradient predicts": (
             float(fall / predicted),
             0.98,
             1.02,
         ),
         "some are chosen, and most are not": (float(chosen.mean()), 0.05, 0.6),
-        "beneath the chosen ones the error is at least 1.5 times that beneath the others": (
+        "below the chosen ones the error is at least 1.5 times that below the others": (
             float(beneath[chosen].mean() / beneath[~chosen].mean()),
             1.5,
             50,
@@ -239,8 +247,8 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
         figure = Figure(figsize=(7.0, 2.7), layout="constrained")
         panels = figure.subplots(1, 3)
         _show(panels[0], truth, "a photograph")
-        _show(panels[1], shown, "arrows: where descent moves means")
-        _show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
+        _show(panels[1], shown, "arrows: −gradient of the means")
+        _show(panels[2], 0.35 * shown, "circles: absolute gradient; orange: chosen")
         panels[1].quiver(
             *(places - 0.5).T,
             *arrows.T,
@@ -264,7 +272,7 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
-    """One capture, three representations: pictures, bytes, what photographs want at first."""
+    """One capture, three representations: images, bytes, gradients at the start."""
     views, unseen = _photographs(VIEWS), _photographs(3, 1.0)
     begin = _cloud(80, 0.1)
     _, splats, _ = _fitted(module, ())
@@ -273,7 +281,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     score = _score(module, splats, unseen)
     sizes = [4 * sum(a.size for a in splats.values()), 4 * volume.size, 4 * grid]
     facts: Facts = {
-        "the Gaussians have the most decibels": bool(score > max(score9[0], score11[0])),
+        "the Gaussians have the highest PSNR": bool(score > max(score9[0], score11[0])),
         "and the fewest bytes": bool(sizes[0] < min(sizes[1:])),
         "10 KiB of them as float32": (sizes[0] / 1024, 9.5, 10.5),
         "all three have more than 20 dB": (min(score, score9[0], score11[0]), 20, 60),
@@ -290,7 +298,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 3.9), layout="constrained")
         panels = figure.subplots(2, 4)
-        _show(panels[0, 0], unseen[0][1], "a new view: truth")
+        _show(panels[0, 0], unseen[0][1], "held-out view: truth")
         for axes, image, name, size, decibels in zip(
             panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
         ):
@@ -324,7 +332,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def _camera(place: Array, size: int) -> Camera:
-    """At a place, looking at the origin; y down."""
+    """A camera that looks at the origin; y down."""
     forward = -place / np.linalg.norm(place)
     side = np.cross(forward, [0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
@@ -360,7 +368,7 @@ def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
 
 
 def _photograph(camera: Camera) -> Array:
-    """Three lit and striped balls before black, nine rays a pixel."""
+    """Three lit and striped balls before black, nine rays per pixel."""
     fine = 3
     eye, d = _rays(camera, fine)
     image, nearest = np.zeros(d.shape), np.full(d.shape[:2], np.inf)
@@ -385,7 +393,7 @@ def _photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:
 
 
 def _cloud(count: int, scale: float) -> Scene:
-    """Gray balls anywhere."""
+    """Gray balls at random positions."""
     rng = np.random.default_rng(15)
     return {
         "means": rng.uniform(-0.8, 0.8, (count, 3)),
@@ -418,7 +426,7 @@ def _score(module: ModuleType, scene: Scene, views: list[tuple[Camera, Array]]) 
 
 
 def _solution_of(number: str) -> ModuleType:
-    """The solution's module of another assignment."""
+    """The solution of another assignment, as a module."""
     folder = next(Path(path) for name, path in source_folders().items() if name.startswith(number))
     return read_folder(folder).reference
 
@@ -442,7 +450,7 @@ def _views_of_09(views: list[tuple[Camera, Array]]) -> dict[str, object]:
 def _volume(
     views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
 ) -> tuple[Array, Array, tuple[float, Array]]:
-    """Assignment 09's fit: volume, the derivative by density at its start, score and a view."""
+    """The fit of assignment 09: volume, density gradient at its start, score and a view."""
     other = _solution_of("09")
     photos, new = _views_of_09(views), _views_of_09(unseen)
     fog = other.fog((20, 20, 20))
@@ -462,7 +470,7 @@ def _volume(
 def _grid(
     views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
 ) -> tuple[int, Array, tuple[float, Array]]:
-    """Assignment 11's fit: how many numbers, the derivative by density at its start, and a view."""
+    """The fit of assignment 11: its size, density gradient at its start, and a view."""
     other = _solution_of("11")
     rays, target = _bundle(views)
     chosen = np.random.default_rng(15).choice(len(target), 1000, replace=False)
@@ -512,7 +520,7 @@ def _show(axes: Axes, picture: Array, title: str) -> None:
 def _calm(
     make: Callable[[ModuleType], tuple[Figure, Facts]],
 ) -> Callable[..., tuple[Figure, Facts]]:
-    """Far from a splat exp underflows to 0, as it should."""
+    """Far from a splat exp underflows to 0, as intended."""
 
     def drawn(module: ModuleType) -> tuple[Figure, Facts]:
         with np.errstate(under="ignore"):

@@ -26,7 +26,7 @@ from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import any_material, bent_floor, stage
 from tests.transport.test_alpha import checker, gray, shade
-from tests.transport.test_glow import room
+from tests.transport.test_emission_textures import room
 
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
 SPP = 3
@@ -180,7 +180,7 @@ def test_spelling_and_mistakes() -> None:
     ):
         with pytest.raises(RangeError, match="direction_of: parameter"):
             direction_of(params, spelling)
-    with pytest.raises(RangeError, match="spp: expected at least 1"):
+    with pytest.raises(RangeError, match="spp: expected a whole number of at least 1"):
         derivative_image(tracer, "emission.lamp", spp=0, seed=0)
     bad: tuple[tuple[dict[str, Any], type[Exception]], ...] = (
         ({"emission.lamp": np.ones(2)}, ShapeError),

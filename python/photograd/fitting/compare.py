@@ -8,6 +8,7 @@ grid draws rays at random, a step of Gaussians a whole view; the seconds of both
 
 from __future__ import annotations
 
+import hashlib
 import json
 import time
 from collections.abc import Callable, Sequence
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
-from photograd._checkpoint import FILE_NAME
+from photograd._checkpoint import FILE_NAME, make_folder
 from photograd._compiled import _core
 from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
@@ -33,6 +34,7 @@ FRAMES = 5
 """Frames that are timed; the median counts."""
 
 _SECONDS = "seconds.json"
+_START = "start_from.json"
 
 Run = Callable[[Fit, Path], FitResult]
 """Runs a fit in a folder, usually under a progress bar."""
@@ -80,6 +82,10 @@ def parse_candidates(text: str, start_from: Model | None = None) -> list[Candida
     representation that a capture cannot start, or one without the model that it starts from: an
     octree without a grid before it, a textured mesh without `start_from`. Or a `start_from` that
     none of them starts from.
+
+    Args:
+        text: names with a resolution or a number, separated by commas.
+        start_from: the model that some of them start from.
     """
     candidates = []
     for word in text.split(","):
@@ -112,6 +118,11 @@ def source_of(
 
     It is `start_from` where that is of a kind to start from, or the model of the nearest candidate
     before it of the same resolution. Raises RangeError if there is none.
+
+    Args:
+        candidate: one of `candidates`.
+        candidates: of the comparison, in order.
+        start_from: the model that was given to start from.
     """
     kind = fittable()[candidate.representation]
     if kind.first_model != "required":
@@ -143,13 +154,29 @@ def compare_one(
     run: Run,
     *,
     source: Path | Model | None = None,
+    source_name: str = "",
 ) -> tuple[Score, Evaluation] | None:
     """Fit `candidate` to `capture` in `folder`, or continue there, and score it.
 
-    `name` is what the table calls the capture; `options` holds what all candidates share; `source`
-    is the model that the fit starts from, or its folder, and then its seconds count, too. Returns
-    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
+    Args:
+        name: what the table calls the capture.
+        capture: the photographs.
+        candidate: a representation and its size.
+        folder: of the fit; what it holds is continued.
+        options: of the fit, those that all candidates share included.
+        run: runs the fit in its folder.
+        source: the model that the fit starts from, or its folder; then its seconds count, too.
+        source_name: what errors call a model, such as its file.
+
+    Returns:
+        The line of the table and what it comes from, or None if `run` ended before the fit did: the
+        same call continues it, and its seconds add up.
+
+    Raises:
+        RangeError: a folder of other options, or of a fit that started from another model.
     """
+    first = load_model(source) if isinstance(source, Path) else source
+    start = _description(first, source.name if isinstance(source, Path) else source_name)
     if (folder / FILE_NAME).exists():
         job = Fit.resume(capture, folder)
         wanted = asdict(options)
@@ -163,9 +190,11 @@ def compare_one(
                     "choose another folder, or give the options that it was made with",
                 )
             )
+        _require_start(folder, start)
     else:
-        first = load_model(source) if isinstance(source, Path) else source
         job = Fit.start(capture, options, start_from=first)
+        make_folder(folder)
+        atomic_write(folder / _START, json.dumps({"start_from": start}).encode())
     spent = _spent(folder)
     if job.step_number < options.steps:
         result = run(job, folder)
@@ -197,7 +226,12 @@ def stored_bytes(model: Model) -> int:
 
 
 def frame_seconds(model: Model, capture: Capture) -> float:
-    """Median time to draw the first held-out view."""
+    """Median time to draw the first held-out view.
+
+    Args:
+        model: that is drawn.
+        capture: whose first held-out view has the camera.
+    """
     camera = capture.test[0].camera
     times = []
     for _ in range(FRAMES):
@@ -208,14 +242,22 @@ def frame_seconds(model: Model, capture: Capture) -> float:
 
 
 def worst_view(evaluations: Sequence[Evaluation]) -> list[ViewScore]:
-    """What each evaluation says of the view with the lowest mean PSNR over all of them."""
+    """What each evaluation says of the view with the lowest mean PSNR over all of them.
+
+    Args:
+        evaluations: of several models on the same views.
+    """
     scores = np.array([[view.psnr for view in e.views] for e in evaluations])
     index = int(scores.mean(axis=0).argmin())
     return [e.views[index] for e in evaluations]
 
 
 def markdown(scores: Sequence[Score]) -> str:
-    """The table as text, best PSNR of each capture in bold, and the protocols below it."""
+    """The table as text, best PSNR of each capture in bold, and the protocols below it.
+
+    Args:
+        scores: lines of the table.
+    """
     best = {s.capture: max(t.psnr for t in scores if t.capture == s.capture) for s in scores}
     lines = [
         "| capture | representation | PSNR, dB | SSIM | MiB | training, s | frame, ms |",
@@ -236,3 +278,24 @@ def markdown(scores: Sequence[Score]) -> str:
 def _spent(folder: Path) -> float:
     path = folder / _SECONDS
     return float(json.loads(path.read_text())["seconds"]) if path.exists() else 0.0
+
+
+def _description(model: Model | None, name: str) -> str:
+    """The model that a fit starts from: its name, and a digest of its arrays."""
+    if model is None:
+        return "no model"
+    digest = hashlib.blake2b(digest_size=4)
+    for key, array in sorted(model.field.stored().items()):
+        digest.update(f"{key} {array.dtype} {array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return f"{name} ({digest.hexdigest()})"
+
+
+def _require_start(folder: Path, start: str) -> None:
+    """Raise RangeError if the fit in a folder started from another model."""
+    path = folder / _START
+    before = json.loads(path.read_text())["start_from"] if path.exists() else "no model"
+    if before.rpartition("(")[2] != start.rpartition("(")[2]:
+        expected = f"{before}, from which the fit in {folder} started"
+        remedy = "give the same model, or choose another --out"
+        raise RangeError(message("compare", "start_from", expected, start, remedy))

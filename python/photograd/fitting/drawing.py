@@ -12,8 +12,8 @@ from photograd_course.metrics import round_to_8_bits
 from photograd._notebook import as_html, png
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
-from photograd.errors import Error
-from photograd.representation import Fittable, ImageBatch, RayBatch, RenderOptions
+from photograd.errors import Error, ShapeError, message
+from photograd.representation import Fittable, ImageBatch, Outputs, RayBatch, RenderOptions
 from photograd.types import Array
 
 RAYS_AT_ONCE = 1 << 16
@@ -26,28 +26,53 @@ def render_field(field: Fittable, camera: Camera, stop: float) -> tuple[Array, A
 
     Colors are linear or display values, as the field's `color_space` says; `stop` is that of
     `RenderOptions`.
+
+    Raises:
+        ShapeError: a rendering without opacity or depth.
     """
     options = RenderOptions(stop=stop)
     size = (camera.height, camera.width)
     drawn: Any = field
     if "rays" not in drawn.capabilities:
         whole, _ = drawn.render(ImageBatch(camera), seed=0, step=0, options=options)
-        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
+        color, opacity, depth = _require_all(field, whole)
+        return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
     parts = []
     for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
         ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
         origins, directions = camera.rays(ids)
         batch = RayBatch(origins, directions, ids.astype(np.uint32))
         outputs, _ = drawn.render(batch, seed=0, step=0, options=options)
-        parts.append((outputs.color, outputs.opacity, outputs.depth))
+        parts.append(_require_all(field, outputs))
     color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
     return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+
+
+def _require_all(field: Fittable, outputs: Outputs) -> tuple[Array, Array, Array]:
+    """Color, opacity and depth of a rendering; what `Outputs` may leave out is needed to draw."""
+    color, opacity, depth = outputs.color, outputs.opacity, outputs.depth
+    for name, array in (("opacity", opacity), ("depth", depth)):
+        if array is None or 3 * array.size != color.size:
+            got = "None" if array is None else f"shape {array.shape}"
+            expected = f"{color.size // 3} values, to be drawn over a background"
+            remedy = "return Outputs(color, opacity, depth), ones and zeros if there are none"
+            raise ShapeError(message(f"{field.name}.render", name, expected, got, remedy))
+    assert opacity is not None
+    assert depth is not None
+    return color, opacity, depth
 
 
 def display_field(
     field: Fittable, background: Array | None, camera: Camera, stop: float = 1e-4
 ) -> Array:
-    """The field (H, W, 3) in display values, over white or a linear background (3,)."""
+    """The field (H, W, 3) in display values, over white or a linear background (3,).
+
+    Args:
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+        camera: where it is seen from.
+        stop: transmittance below which a ray ends.
+    """
     color, opacity, _ = render_field(field, camera, stop)
     if field.color_space == "display":
         behind = 1.0 if background is None else srgb_encode(background)
@@ -61,13 +86,23 @@ def display_field(
 
 
 def over_white(encoded: Array, alpha: Array) -> Array:
-    """Straight display values over white, clipped and rounded to 8 bits."""
+    """Straight display values over white, clipped and rounded to 8 bits.
+
+    Args:
+        encoded: (H, W, 3) display values, straight.
+        alpha: (H, W).
+    """
     alpha = alpha[..., None]
     return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
 
 
 def portrait(field: Fittable, background: Array | None) -> Array:
-    """The field (H, W, 3) in display values, from a camera in front of its box."""
+    """The field (H, W, 3) in display values, from a camera in front of its box.
+
+    Args:
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+    """
     own = field.turntable(1, size=PORTRAIT, elevation=25.0, background=background)
     if own is not None:
         return next(iter(own))
@@ -81,6 +116,12 @@ def field_html(
     """What a notebook shows of a field: its size, some facts, a picture.
 
     A field that cannot be drawn is shown without a picture, and with the reason.
+
+    Args:
+        title: a heading.
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+        facts: rows of the table, by name.
     """
     size = " x ".join(map(str, field.shape))
     stored = sum(array.nbytes for array in field.stored().values())

@@ -19,10 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.metrics import psnr, ssim, whole_windows
 
+from photograd._checks import require_instance
 from photograd._notebook import EDGE, as_html, png_of_sheet, sheet
 from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fitting.drawing import display_field, over_white, render_field
 from photograd.fitting.model import Model
 from photograd.types import Array
@@ -91,24 +92,43 @@ def render_camera(
     """Premultiplied color (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
 
     Colors are linear or display values, as the field's `color_space` says.
+
+    Args:
+        model: what is drawn.
+        camera: where it is seen from.
+        stop: transmittance below which a ray ends.
     """
     return render_field(model.field, camera, stop)
 
 
 def display_image(model: Model, camera: Camera) -> Array:
-    """The model (H, W, 3) in display values, over white or its learned background."""
+    """The model (H, W, 3) in display values, over white or its learned background.
+
+    Args:
+        model: what is drawn.
+        camera: where it is seen from.
+    """
     return display_field(model.field, model.background, camera)
 
 
 def truth_image(view: View) -> Array:
-    """The photograph (H, W, 3) under the same protocol."""
+    """The photograph (H, W, 3) under the same protocol.
+
+    Args:
+        view: the photograph.
+    """
     rgba = view.rgba().astype(np.float64)
     color = display_color(rgba[..., :3], view.color_space)
     return over_white(color, rgba[..., 3])
 
 
 def score_view(model: Model, view: View) -> ViewScore | None:
-    """Score the model on one photograph; None if that has no 11 x 11 window of valid pixels."""
+    """Score the model on one photograph; None if that has no 11 x 11 window of valid pixels.
+
+    Args:
+        model: what is scored.
+        view: a photograph that it has not seen.
+    """
     valid = view.valid_mask()
     if not whole_windows(valid).any():
         return None
@@ -122,9 +142,30 @@ def evaluate(
 ) -> Evaluation:
     """Score the model on `views`, normally the test split.
 
-    Raises RangeError if there are none, or none with an 11 x 11 window of valid pixels; IoError for
-    a photograph or a mask that cannot be read.
+    Args:
+        model: as `fit` and `load_model` return it.
+        views: photographs that it has not seen, such as `capture.test`.
+        on_view: called after each view with the number of views that are scored.
+
+    Returns:
+        PSNR and SSIM, means and those of each view, and the protocol that they hold under.
+
+    Raises:
+        DtypeError: no `Model`, or no sequence of `View`s.
+        RangeError: no views, or none with an 11 x 11 window of valid pixels.
+        IoError: a photograph or a mask that cannot be read.
+
+    Example:
+        >>> capture = photograd.load_capture("photos")
+        >>> model = photograd.fit(capture, resolution=16, steps=20, rays=256)
+        >>> scores = photograd.evaluate(model, capture.test)
+        >>> scores.psnr > 5, [view.name for view in scores.views]
+        (True, ['test/r_000'])
     """
+    require_instance("evaluate", "model", model, Model, "load_model reads one, fit makes one")
+    if not isinstance(views, Sequence) or not all(isinstance(view, View) for view in views):
+        expected, got = "a sequence of Views", type(views).__name__
+        raise DtypeError(message("evaluate", "views", expected, got, "such as capture.test"))
     if not views:
         raise RangeError(
             message(
@@ -151,7 +192,13 @@ def evaluate(
 
 
 def protocol(model: Model, scores: Sequence[ViewScore], left_out: Sequence[str] = ()) -> str:
-    """The sentence that belongs next to every number."""
+    """The sentence that belongs next to every number.
+
+    Args:
+        model: that was scored.
+        scores: of its views.
+        left_out: names of views without a score.
+    """
     sizes = sorted({(score.valid.shape[1], score.valid.shape[0]) for score in scores})
     size = ", ".join(f"{w}x{h}" for w, h in sizes)
     behind = "white" if model.background is None else "white, render over its learned background"
@@ -207,6 +254,11 @@ def step_change(
 
     Colors are premultiplied and as the field has them, so that no background takes part; rays are
     not stopped early.
+
+    Args:
+        model: whose step is halved.
+        views: whose cameras are taken.
+        max_views: at most so many of them.
     """
     dt = model.field.dt
     if dt is None or not views:
@@ -227,5 +279,9 @@ def step_change(
 
 
 def as_entry(change: StepChange | None) -> dict[str, Any]:
-    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step."""
+    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step.
+
+    Args:
+        change: what `step_change` returned.
+    """
     return {} if change is None else {"half_step": asdict(change)}

@@ -24,13 +24,16 @@ import numpy as np
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
+from photograd_course.suggest import choose_from
 
 from photograd._checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
+from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd._descend import descend
 from photograd._fit_options import FitOptions
 from photograd.capture.bounds import estimate_bounds, require_views_of
 from photograd.capture.capture import Capture
+from photograd.errors import RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.checks import (
     require_background_of,
@@ -62,12 +65,28 @@ class Fit:
 
     `Fit.start` begins one, `Fit.resume` continues from a folder; `run` goes on until the end,
     saving a checkpoint every `checkpoint_seconds` and whenever `should_stop()` says so.
+
+    Attributes:
+        capture: the photographs.
+        options: of the fit.
+        model: the field as it is now, a representation; `load_model` makes a `Model` of what `run`
+            saved.
+        background: (3,) parameter of a learned background, or None.
+        step_number: how many steps were done.
+        history: (step, loss, PSNR of the batch in dB) of each.
     """
 
     def __init__(
         self, capture: Capture, options: FitOptions, model: Fittable, background: Array | None
     ) -> None:
-        """Use `start` or `resume`."""
+        """Use `start` or `resume`.
+
+        Args:
+            capture: the photographs.
+            options: of the fit.
+            model: the field at the first step.
+            background: (3,) parameter of a learned background, or None.
+        """
         self.capture = capture
         self.options = options
         self.model = model
@@ -92,13 +111,22 @@ class Fit:
     ) -> Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
-        Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
-        from one, and a textured mesh needs one with its mesh.
+        Args:
+            capture: the photographs.
+            options: of the fit; `options_for` has those of a representation. Grids begin coarse:
+                see `FitOptions`.
+            allow_blind: accept training cameras that do not see the scene's box, if any does.
+            start_from: another model: Gaussians may begin on its surfaces, the leaves of an octree
+                have to be cut from one, and a textured mesh needs one with its mesh.
 
-        Raises RangeError for an unknown or unfit representation, or options that take more memory
-        than there is; SceneError naming the training cameras that do not see the scene's box (with
-        `allow_blind` only if none does).
+        Raises:
+            DtypeError: no `Capture`, or no `FitOptions`.
+            RangeError: an unknown representation, or one that no capture can start; options that
+                take more memory than there is.
+            SceneError: training cameras that do not see the scene's box; names them.
         """
+        require_instance("Fit.start", "capture", capture, Capture, "load_capture reads one")
+        require_instance("Fit.start", "options", options, FitOptions)
         require_startable(options.representation)
         bounds = estimate_bounds(capture)
         if not allow_blind:
@@ -122,10 +150,15 @@ class Fit:
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`.
+        """Continue the fit that left a checkpoint in a folder.
 
-        Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
-        capture: other names, other images, other cameras or another size.
+        Args:
+            capture: that the fit was started on.
+            folder: that `run` was given.
+
+        Raises:
+            IoError: a missing or damaged checkpoint.
+            RangeError: one of another capture: other names, images, cameras or another size.
         """
         saved = load_checkpoint(folder)
         model = model_of(saved, folder)
@@ -173,24 +206,47 @@ class Fit:
         return self.data.draw(options.rays, seed=options.seed, step=self.step_number)
 
     def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
-        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior."""
+        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior.
+
+        Args:
+            chosen: what `draw` returned.
+        """
         behind = Background(self.background, self.background_kind)
         found = self.data.loss_and_grad(self.model, chosen, behind, self.options, self.step_number)
         self.batch_psnr = found.psnr
         return found.loss, found.gradients
 
     def batches(self, max_rays: int) -> Iterator[RayBatch]:
-        """Rays of all training views, evenly spaced, at most about `max_rays`."""
+        """Rays of all training views, evenly spaced, at most about `max_rays`.
+
+        Args:
+            max_rays: about so many in all.
+        """
         return self.data.batches(max_rays)
 
     def mean_gradient(self, group: str, max_rays: int) -> Array:
-        """dL/d params[group] of the loss over all training views, from about `max_rays` rays."""
+        """dL/d params[group] of the loss over all training views, from about `max_rays` rays.
+
+        Args:
+            group: of `model.params`, or "background" where one is learned.
+            max_rays: evenly spaced over the views; more rays, lower variance.
+
+        Returns:
+            An array of the shape of the parameter.
+
+        Raises:
+            RangeError: no group of that name; names the nearest, or all.
+        """
+        known = [*self.model.params, *(["background"] if self.background is not None else [])]
+        if group not in known:
+            expected, remedy = "a group of parameters", choose_from(group, known)
+            raise RangeError(message("Fit.mean_gradient", "group", expected, repr(group), remedy))
         parts = self.data.spread(max_rays)
         return np.asarray(sum(w * self.loss_and_gradients(rows)[1][group] for rows, w in parts))
 
     def run(
         self,
-        folder: Path,
+        folder: str | Path,
         *,
         on_step: Callable[[Progress], None] | None = None,
         should_stop: Callable[[], bool] = lambda: False,
@@ -198,9 +254,20 @@ class Fit:
     ) -> FitResult:
         """Step until the end or until `should_stop`; the folder then holds the checkpoint.
 
-        Raises IoError if it cannot be written, Error if the loss or a gradient is not finite; the
-        last checkpoint then stays as it was.
+        Args:
+            folder: for the checkpoint, model.npz, and for snapshots of some steps.
+            on_step: called after each step.
+            should_stop: asked after each step; True saves and ends the run.
+            checkpoint_seconds: between two checkpoints.
+
+        Returns:
+            Where the checkpoint lies, and how far the fit came.
+
+        Raises:
+            IoError: the checkpoint cannot be written.
+            Error: the loss or a gradient is not finite; the last checkpoint stays as it was.
         """
+        folder = Path(folder)
         keep, pace = snapshot_steps(self.options), Pace(time.perf_counter())
         if self.step_number == 0:
             save_snapshot(folder, self.model, self.options, 0)
@@ -230,6 +297,9 @@ class Fit:
 
         Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
         never replaced by a bad one.
+
+        Args:
+            folder: DIR, which exists.
         """
         require_finite(self.model.params, self.step_number)
         params = dict(self.model.params)

@@ -23,6 +23,9 @@ def quality_plot(scores: Sequence[Score]) -> Figure:
 
     Up is better, left is smaller; beside each mark stand its training seconds. Candidates of one
     representation share a color.
+
+    Args:
+        scores: of candidates on one or more captures.
     """
     captures = list(dict.fromkeys(score.capture for score in scores))
     labels = list(dict.fromkeys(score.candidate for score in scores))
@@ -48,8 +51,8 @@ def quality_plot(scores: Sequence[Score]) -> Figure:
             for label, (color, mark) in looks.items()
         ]
         height = figure.get_size_inches()[1]
-        place = (LEFT / figure.get_size_inches()[0], 1 - (TOP + PANEL + 0.4) / height)
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=place, ncols=3)
+        anchor = (LEFT / figure.get_size_inches()[0], 1 - (TOP + PANEL + 0.4) / height)
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=anchor, ncols=3)
         style.write_title(figure, "Quality against size", left=LEFT)
         style.write_caption(figure, caption, left=LEFT, right=0.1)
     return figure

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from photograd import sh
+from photograd._notebook import EDGE, png_of_sheet, sheet, signed_colors, smaller
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.fitting.data import TrainingView, TrainingViews
@@ -46,6 +47,18 @@ class ViewGradients:
     grad2d: Array
     loss: float
 
+    def _repr_png_(self) -> bytes:
+        """The picture, and dL/d opacity logit at the pixels of the projected means.
+
+        Blue where more opacity lowers the loss.
+        """
+        height, width = self.picture.shape[:2]
+        inside = self.visible & (self.pixels >= 0).all(1) & (self.pixels < [width, height]).all(1)
+        column, row = self.pixels[inside].astype(np.int64).T
+        signed = np.zeros((height, width))
+        np.add.at(signed, (row, column), self.d_logit[inside])
+        return png_of_sheet(sheet([self.picture, signed_colors(smaller(signed))], 2, EDGE // 2))
+
 
 def view_gradients(
     scene: GaussianScene, views: TrainingViews, number: int, *, ssim_weight: float = 0.2
@@ -53,6 +66,12 @@ def view_gradients(
     """Gradients over at most 24 of the views, evenly spaced; the picture is that of view `number`.
 
     Over white. Does not touch the scene's own statistics.
+
+    Args:
+        scene: Gaussians.
+        views: the photographs.
+        number: of the view that is drawn.
+        ssim_weight: share of 1 - SSIM in the loss.
 
     Raises:
         IndexError: there is no such view.
@@ -97,6 +116,10 @@ def screen_covariances(gaussians: Gaussians, camera: Camera) -> Array:
     """(N, 2, 2) covariances of the Gaussians on the screen, in pixel^2; NaN behind the camera.
 
     J W R S S^T R^T W^T J^T with the projection's Jacobian J at the mean [Zwicker2001].
+
+    Args:
+        gaussians: N of them.
+        camera: where they are seen from.
     """
     view = invert_rigid(camera.world_from_camera)
     local = gaussians.means.astype(np.float64) @ view[:3, :3].T + view[:3, 3]
@@ -114,7 +137,13 @@ def screen_covariances(gaussians: Gaussians, camera: Camera) -> Array:
 
 
 def grad2d_picture(gaussians: Gaussians, grad2d: Array, camera: Camera) -> Array:
-    """(H, W) grad2d as the camera would see it, if it were what Gaussians show; 0 in between."""
+    """(H, W) grad2d as the camera would see it, if it were what Gaussians show; 0 in between.
+
+    Args:
+        gaussians: N of them.
+        grad2d: (N,) positional gradients.
+        camera: where they are seen from.
+    """
     top = max(float(grad2d.max()), 1e-30)
     plain = (grad2d / top - 0.5) / sh.Y_0
     arrays = gaussians.arrays() | {"sh": np.repeat(plain[:, None, None], 3, axis=2)}

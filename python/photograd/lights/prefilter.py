@@ -67,8 +67,7 @@ def zonal_mean(
     if not isinstance(light, AROUND):
         expected, got = f"one of {', '.join(c.__name__ for c in AROUND)}", type(light).__name__
         raise RangeError(message("zonal_mean", "light", expected, got))
-    if not 2 <= rows <= MOST_ROWS:
-        raise RangeError(message("zonal_mean", "rows", f"2 to {MOST_ROWS}", rows))
+    Arguments("zonal_mean").integer("rows", rows, low=2, high=MOST_ROWS)
     turn = light.world_from_map if isinstance(light, EnvironmentMap) else np.eye(3)
     texels = light.texels.shape[0] if isinstance(light, EnvironmentMap) else LEAST_ROWS
     count = _source_rows(texels, width, rows)
@@ -167,11 +166,11 @@ class SpecularMap:
 
         Beyond the first and the last, those.
         """
-        place = np.interp(np.asarray(roughness), self.roughnesses, np.arange(len(self.levels)))
-        place = np.broadcast_to(place, np.shape(w)[:-1])
-        found = np.zeros((*place.shape, 3))
+        at = np.interp(np.asarray(roughness), self.roughnesses, np.arange(len(self.levels)))
+        at = np.broadcast_to(at, np.shape(w)[:-1])
+        found = np.zeros((*at.shape, 3))
         for number, level in enumerate(self.levels):
-            share = np.maximum(1 - np.abs(place - number), 0)
+            share = np.maximum(1 - np.abs(at - number), 0)
             used = share > 0
             found[used] += share[used][:, None] * level.at(np.asarray(w)[used])
         return found

@@ -13,12 +13,12 @@ from photograd_course.portable_math import log, norm, root
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._fit_options import FitOptions
 from photograd.capture.bounds import mean_coverage, silhouettes_of
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.view import View, display_color
-from photograd.errors import RangeError, message
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.density import DensityControl, NoControl, Schedule, logits
 from photograd.splats.markov_chain import MarkovChain
@@ -39,7 +39,7 @@ FIRST_OPACITY = 0.1
 CARVED = 0.6
 """Silhouettes that cover less of the pictures than this say where the scene is."""
 
-MOST_TRIES = 64
+MAX_TRIES = 64
 """A hull that holds less than this share of its box gets fewer points."""
 
 _PAIRS_AT_ONCE = 1 << 18
@@ -60,11 +60,18 @@ def start_gaussians(
     points if it has a hundred; else at `count` random points of the box (2, 3), where the
     photographs have alpha only those that no silhouette excludes.
 
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of random points.
+        degree: of the harmonics.
+        seed: of random points.
+        given: points and their display colors, or None.
+
     Raises:
         RangeError: `count` below 1, or a degree that splats do not have.
     """
-    if count < 1:
-        raise RangeError(message("start_gaussians", "count", "at least 1", count))
+    Arguments("start_gaussians").integer("count", count, low=1)
     if given is not None:
         points, colors = given
         size = neighbor_distance(points)
@@ -84,6 +91,12 @@ def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussia
     """Round, faint Gaussians at points (N, 3) with scales (N,), of display colors (N, 3).
 
     In float32.
+
+    Args:
+        points: (N, 3).
+        size: (N,) in meters.
+        colors: (N, 3).
+        degree: of the harmonics.
 
     Raises:
         RangeError: a degree that splats do not have.
@@ -120,8 +133,8 @@ def neighbor_distance(points: Array) -> Array:
         near.sort(axis=1)
         found[part] = near[:, 1:].mean(axis=1)  # the nearest is the point itself
     reach = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
-    least = 1e-7 * max(float(reach), 1e-7)
-    return np.maximum(np.sqrt(found), least)
+    min_distance = 1e-7 * max(float(reach), 1e-7)
+    return np.maximum(np.sqrt(found), min_distance)
 
 
 def random_points(
@@ -130,17 +143,23 @@ def random_points(
     """`count` points (N, 3) uniform in the box, or in the visual hull inside of it.
 
     Also the volume that they fill, in cubic meters, and a sentence on them.
+
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of points.
+        seed: of their choice.
     """
     silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
     carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
-    seen = _occupied(capture.train) if carve else []
+    silhouettes = _occupied(capture.train) if carve else []
     kept: list[Array] = []
     have = tried = 0
-    while have < count and tried < MOST_TRIES * count:
+    while have < count and tried < MAX_TRIES * count:
         pixel = np.arange(tried, tried + count)[:, None]
         u = uniform(seed, step=0, pixel=pixel, sample=6, dimension=np.arange(3))
         points = box[0] + u * (box[1] - box[0])
-        kept.append(points[_inside(seen, points)])
+        kept.append(points[_inside(silhouettes, points)])
         have, tried = have + len(kept[-1]), tried + count
     whole = float(np.prod(box[1] - box[0]))
     if have == 0:
@@ -150,13 +169,18 @@ def random_points(
     return found, whole * have / tried, f"{len(found)} random points {where}"
 
 
-def mean_colors(views: Sequence[View], points: Array, *, most: int = 24) -> Array:
+def mean_colors(views: Sequence[View], points: Array, *, max_views: int = 24) -> Array:
     """(N, 3) display colors: the mean of the pixels that points (N, 3) land on; gray for none.
 
     Nothing is hidden by anything here, which is good enough to begin with.
+
+    Args:
+        views: the photographs.
+        points: (N, 3).
+        max_views: at most so many, evenly spaced.
     """
     total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
-    for view in views[:: max(1, len(views) // most)]:
+    for view in views[:: max(1, len(views) // max_views)]:
         rows, column, row = _landing(view.camera, points)
         rgba = view.rgba()[row, column].astype(np.float64)
         color = display_color(rgba[:, :3], view.color_space)
@@ -171,10 +195,10 @@ def _occupied(views: Sequence[View]) -> list[tuple[Camera, Array]]:
     return [(view.camera, (view.rgba()[..., 3] > 0) | ~view.valid_mask()) for view in views]
 
 
-def _inside(seen: Sequence[tuple[Camera, Array]], points: Array) -> Array:
+def _inside(silhouettes: Sequence[tuple[Camera, Array]], points: Array) -> Array:
     """(N,) whether every picture that shows a point may show the object there."""
     alive = np.ones(len(points), np.bool_)
-    for camera, occupied in seen:
+    for camera, occupied in silhouettes:
         rows, column, row = _landing(camera, points)
         alive[rows] &= occupied[row, column]
     return alive
@@ -186,8 +210,8 @@ def _landing(camera: Camera, points: Array) -> tuple[Array, Array, Array]:
     with np.errstate(invalid="ignore"):
         shown = (depth > 0) & (pixels >= 0).all(axis=1)
         shown &= (pixels < [camera.width, camera.height]).all(axis=1)
-    place = pixels[shown].astype(np.int64)
-    return np.flatnonzero(shown), place[:, 0], place[:, 1]
+    pixel = pixels[shown].astype(np.int64)
+    return np.flatnonzero(shown), pixel[:, 0], pixel[:, 1]
 
 
 def _some_points(capture: Capture, count: int, seed: int) -> tuple[Array, Array]:
@@ -228,8 +252,12 @@ def scene_extent(capture: Capture, box: Array) -> float:
     """1.1 times the greatest distance of a camera from their mean, in meters [Kerbl2023].
 
     Cameras that all stand in one place say nothing: then half the diagonal of the box.
+
+    Args:
+        capture: whose cameras are asked.
+        box: (2, 3) of the scene.
     """
-    places = np.array([view.camera.position for view in capture.train])
-    spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    positions = np.array([view.camera.position for view in capture.train])
+    spread = float(np.linalg.norm(positions - positions.mean(axis=0), axis=1).max())
     diagonal = norm(box[1] - box[0])
     return 1.1 * spread if spread > 0.05 * diagonal else 0.5 * diagonal

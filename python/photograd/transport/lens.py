@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
 from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
@@ -28,10 +29,8 @@ class Lens:
     focus: float
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.radius) and self.radius >= 0):
-            raise RangeError(message("Lens", "radius", "at least 0 m", self.radius))
-        if not (np.isfinite(self.focus) and self.focus > 0):
-            raise RangeError(message("Lens", "focus", "above 0 m", self.focus))
+        require_bounds(self, "radius", low=0)
+        require_bounds(self, "focus", above=0)
 
 
 PINHOLE = Lens(0.0, 1.0)
@@ -45,7 +44,7 @@ class Shutter:
     """The camera moves from its pose to `closing` at one speed, straight on and about one axis.
 
     A picture is the mean over all moments in between (cpp/photograd/camera/camera_motion.h).
-    Shapes may move as well (motion.py); what does not, stands still.
+    Shapes may move as well (`photograd.transport.motion`); what does not, stands still.
 
     Attributes:
         closing: world_from_camera (4, 4) when the shutter closes; camera axes +X right, +Y down, +Z
@@ -62,6 +61,9 @@ class Shutter:
 
     def motion(self, opening: Camera) -> tuple[FloatArray, FloatArray]:
         """Way (3,) in meters, and turn (3,), radians along its axis, both in the world.
+
+        Args:
+            opening: the camera when the shutter opens.
 
         Raises:
             RangeError: half a turn, whose axis nobody can tell.

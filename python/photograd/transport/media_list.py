@@ -39,7 +39,14 @@ def check_media(
     media: Mapping[str, Medium],
     world: str | None,
 ) -> None:
-    """Raise SceneError for names that do not exist, and interiors that no light could enter."""
+    """Raise SceneError for names that do not exist, and interiors that no light could enter.
+
+    Args:
+        shapes: of the scene.
+        materials: of the scene.
+        media: of the scene.
+        world: name of the medium around everything, or None.
+    """
     for name in (BOUNDARY, VACUUM):
         if name in materials or name in media:
             expected = "another name, this one has a meaning of its own"
@@ -90,25 +97,31 @@ def is_closed(shape: Shape) -> bool:
     """
     if not isinstance(shape, MeshShape):  # spheres and signed distance fields have one
         return True
-    places, same = np.unique(shape.vertices, axis=0, return_inverse=True)
+    points, same = np.unique(shape.vertices, axis=0, return_inverse=True)
     faces = same.reshape(-1)[shape.faces.astype(np.int64)]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # slivers of a welded edge
     edges = np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)])
-    forth = edges[:, 0] * len(places) + edges[:, 1]
-    back = edges[:, 1] * len(places) + edges[:, 0]
+    forth = edges[:, 0] * len(points) + edges[:, 1]
+    back = edges[:, 1] * len(points) + edges[:, 0]
     if not np.array_equal(np.sort(forth), np.sort(back)):
         return False
-    corners = places[faces].astype(np.float64) - places[0]
+    corners = points[faces].astype(np.float64) - points[0]
     return float(np.linalg.det(corners).sum()) > 0
 
 
-class ListedMedia:
+class PackedMedia:
     """The media of a scene, numbered, and where they are."""
 
     def __init__(
         self, media: Mapping[str, Medium], materials: Mapping[str, Material], world: str | None
     ) -> None:
-        """Of a scene that has been checked."""
+        """Of a scene that has been checked.
+
+        Args:
+            media: of the scene.
+            materials: of the scene.
+            world: name of the medium around everything, or None.
+        """
         self.media = media
         self._numbers = {name: number for number, name in enumerate(media)}
         self._materials = materials
@@ -119,7 +132,7 @@ class ListedMedia:
             for key, value in medium.start.items()
         }
 
-    def places(self, shapes: Sequence[Shape], owner: Array) -> dict[str, Any] | None:
+    def core_arguments(self, shapes: Sequence[Shape], owner: Array) -> dict[str, Any] | None:
         """Arguments of the core's `set_media`, or None for a scene of surfaces alone.
 
         `shapes` are the tracer's, `owner` (S,) says which of them each of the core's is of.
@@ -152,7 +165,11 @@ class ListedMedia:
         return NOTHING if solid and is_closed(shape) else UNCHANGED
 
     def changes(self, step: Mapping[str, Array]) -> list[tuple[Any, ...]]:
-        """Rows as those of `rows`, float64, of how params change: any numbers of their shapes."""
+        """Rows as those of `rows`, float64, of how params change: any numbers of their shapes.
+
+        Args:
+            step: {name: change}.
+        """
         found = []
         for name, medium in self.media.items():
             parts = {key: step[f"media.{name}.{key}"] for key in medium.start}
@@ -165,6 +182,10 @@ class ListedMedia:
 
     def rows(self, params: Mapping[str, Array], dtype: npt.DTypeLike) -> list[tuple[Any, ...]]:
         """For the core: (phase function, parameters (P,), densities (X, Y, Z) or None, sigma_maj).
+
+        Args:
+            params: of the tracer.
+            dtype: of the computation.
 
         Raises:
             ShapeError: params of another shape than at the start.
@@ -188,7 +209,11 @@ class ListedMedia:
         return found
 
     def named(self, blocks: Mapping[str, Array]) -> dict[str, Array]:
-        """The derivatives in "media.I" and "densities.I", under the names of the params."""
+        """The derivatives of "media.I" and "densities.I", under the names of the params.
+
+        Args:
+            blocks: derivatives, under the names of blocks of the core.
+        """
         gradients: dict[str, Array] = {}
         for i, (name, medium) in enumerate(self.media.items()):
             row, first = blocks[f"media.{i}"], 0

@@ -20,7 +20,7 @@ from photograd.types import Array
 def moves(shape: Shape) -> bool:
     """Whether a shape is elsewhere when the shutter closes."""
     if isinstance(shape, MeshShape):
-        both = zip(shape.places or (np.eye(4),), shape.closing_places, strict=False)
+        both = zip(shape.instances or (np.eye(4),), shape.closing_instances, strict=False)
         return any(not np.array_equal(*ends) for ends in both)
     if isinstance(shape, SphereShape):
         return shape.closing is not None and not np.array_equal(shape.closing, shape.center)
@@ -28,7 +28,11 @@ def moves(shape: Shape) -> bool:
 
 
 def check_motion(shapes: Sequence[Shape]) -> None:
-    """Raise SceneError for lights that move."""
+    """Raise SceneError for lights that move.
+
+    Args:
+        shapes: of the scene.
+    """
     for shape in shapes:
         if moves(shape) and shape.emission.any():
             expected, remedy = "lights that stand still", "let it shine, or let it move"
@@ -48,13 +52,17 @@ def refuse_motion(function: str, shapes: Sequence[Shape]) -> None:
 def moved_on(shape: Shape, way: Array) -> Shape:
     """A mesh or a sphere that `way` (4, 4) moves, in the world, while the shutter is open.
 
+    Args:
+        shape: when the shutter opens.
+        way: (4, 4) in the world.
+
     Raises:
         SceneError: a sphere that would turn or grow, or a signed distance function.
-        As `MeshShape`.
+        RangeError, SceneError: as `MeshShape`.
     """
     if isinstance(shape, MeshShape):
-        starts = shape.places or (np.eye(4),)
-        return replace(shape, closing_places=tuple(way @ place for place in starts))
+        starts = shape.instances or (np.eye(4),)
+        return replace(shape, closing_instances=tuple(way @ instance for instance in starts))
     if not isinstance(shape, SphereShape):
         expected, remedy = "a mesh or a sphere", "leave out its motion"
         got = "a signed distance function"
@@ -71,11 +79,15 @@ def closing_arrays(
     """World_from_object (I, 3, 4) float64 and spheres (K, 4) float32 when the shutter closes.
 
     None where no mesh, or no sphere, moves.
+
+    Args:
+        meshes: of the scene.
+        spheres: of the scene.
     """
     matrices = [
-        place[:3]
+        instance[:3]
         for mesh in meshes
-        for place in (mesh.closing_places or mesh.places or (np.eye(4),))
+        for instance in (mesh.closing_instances or mesh.instances or (np.eye(4),))
     ]
     balls = [
         [*(ball.center if ball.closing is None else ball.closing), ball.radius] for ball in spheres

@@ -1,8 +1,10 @@
 """Light tracing: particles from the lights, the irradiance where they land, and photon maps.
 
-The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/path/scatter.h (what
-surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h;
-that of photon maps in render/light/photon_map.h.
+The mathematics is in cpp/photograd/scene/emit.h (how they leave),
+cpp/photograd/render/path/scatter.h (what surfaces do to them),
+cpp/photograd/render/path/tracer.h (how they travel) and
+cpp/photograd/render/light/irradiance_sensor.h; that of photon maps in
+cpp/photograd/render/light/photon_map.h.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._checks import require_bounds
 from photograd._compiled import _core
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
@@ -38,14 +41,15 @@ class ParticleOptions:
     roulette_from: int | None = 4
 
     def __post_init__(self) -> None:
-        if not 1 <= self.max_depth <= 4096:
-            raise RangeError(message("ParticleOptions", "max_depth", "1 to 4096", self.max_depth))
-        if self.roulette_from is not None and self.roulette_from < 0:
-            got = self.roulette_from
-            raise RangeError(message("ParticleOptions", "roulette_from", "at least 0", got))
+        require_bounds(self, "max_depth", low=1, high=4096)
+        require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int]:
-        """As the core takes them."""
+        """As the core takes them.
+
+        Args:
+            seed: of all random numbers.
+        """
         late = NEVER if self.roulette_from is None else self.roulette_from
         return self.max_depth, late, seed
 
@@ -54,7 +58,7 @@ PARTICLES = ParticleOptions()
 
 
 @dataclass(frozen=True, eq=False)
-class Receiver:
+class IrradianceSensor:
     """A rectangle of cells that counts the light through its front and lets it go on.
 
     It may lie on a surface. Seen from its front with edge_x to the right and edge_y up, row 0 is on
@@ -77,17 +81,16 @@ class Receiver:
     width: int
 
     def __post_init__(self) -> None:
-        call = Arguments("Receiver", np.float64)
+        call = Arguments("IrradianceSensor", np.float64)
         for name in ("corner", "edge_x", "edge_y"):
             object.__setattr__(self, name, np.array(call.array(name, getattr(self, name), (3,))))
         x, y = np.linalg.norm(self.edge_x), np.linalg.norm(self.edge_y)
         if not (x > 0 and y > 0) or abs(float(self.edge_x @ self.edge_y)) > 1e-6 * x * y:
             expected = "perpendicular edges of some length"
             got = f"{self.edge_x} and {self.edge_y}"
-            raise RangeError(message("Receiver", "edge_x, edge_y", expected, got))
-        if self.height < 1 or self.width < 1:
-            got = f"{self.height} by {self.width}"
-            raise RangeError(message("Receiver", "height, width", "at least 1 cell", got))
+            raise RangeError(message("IrradianceSensor", "edge_x, edge_y", expected, got))
+        for name in ("height", "width"):
+            call.integer(name, getattr(self, name), low=1)
 
     @property
     def cell_area(self) -> float:
@@ -103,14 +106,14 @@ class Receiver:
 
 def trace_light(
     tracer: PathTracer,
-    receiver: Receiver,
+    sensor: IrradianceSensor,
     particles: int,
     *,
     seed: int,
     options: ParticleOptions = PARTICLES,
     sums: Accumulation | None = None,
 ) -> Accumulation:
-    """The irradiance of a receiver, by particles from all lights of the scene.
+    """The irradiance of a sensor, by particles from all lights of the scene.
 
     `mean` of what is returned is (H, W, 3) in W/m^2, linear Rec. 709, and times `cell_area` the
     watts that each cell gets; `standard_error` is right where a particle seldom comes to a cell
@@ -119,7 +122,7 @@ def trace_light(
 
     Args:
         tracer: the scene, at its present `params`.
-        receiver: what is lit.
+        sensor: what is lit.
         particles: how many leave the lights.
         seed: of all random numbers.
         options: how far particles are followed.
@@ -127,10 +130,10 @@ def trace_light(
 
     Raises:
         RangeError: particles below 1, or a scene without lights.
-        ShapeError: sums of another shape than the receiver.
+        ShapeError: sums of another shape than the sensor.
         SceneError: shapes that move.
     """
-    shape = (receiver.height, receiver.width)
+    shape = (sensor.height, sensor.width)
     total = Accumulation.empty(*shape) if sums is None else sums
     total.check_call("trace_light", shape, particles, many="particles")
     _core.trace_light(
@@ -138,7 +141,7 @@ def trace_light(
         options=options.numbers(seed),
         first=total.count,
         count=particles,
-        rectangle=receiver.rows,
+        rectangle=sensor.rows,
         irradiance=total.radiance,
         squares=total.squares,
     )
@@ -169,11 +172,17 @@ class Emitted:
 def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0) -> Emitted:
     """The particles that `trace_light` follows, `first` to `first + count - 1`.
 
+    Args:
+        tracer: of the scene.
+        count: of particles.
+        seed: of all random numbers.
+        first: number of the first particle.
+
     Raises:
         RangeError: count below 1, or a scene without lights.
         SceneError: as `trace_light`.
     """
-    _check_count("emit_particles", count)
+    Arguments("emit_particles").integer("count", count, low=1)
     return Emitted(
         *_core.emit_particles(
             **scene_arguments("emit_particles", tracer), seed=seed, first=first, count=count
@@ -184,6 +193,10 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
 def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     """The scene as the core's functions take it that have no camera.
 
+    Args:
+        function: on whose behalf the error speaks.
+        tracer: of the scene.
+
     Raises:
         SceneError: shapes that move.
     """
@@ -191,11 +204,6 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments
-
-
-def _check_count(function: str, particles: int) -> None:
-    if particles < 1:
-        raise RangeError(message(function, "particles", "at least 1", particles))
 
 
 # Photon mapping: particles kept where they land, and pictures read off their density.
@@ -237,8 +245,7 @@ class PhotonMap:
                 without lights.
             SceneError: shapes that move.
         """
-        if particles < 1:
-            raise RangeError(message("PhotonMap", "particles", "at least 1", particles))
+        Arguments("PhotonMap").integer("particles", particles, low=1)
         self.tracer = tracer
         self.radius = radius
         self._map = _core.PhotonMap(
@@ -274,6 +281,12 @@ class PhotonMap:
         is not specular; all the light there is read from the map. Light that media scatter is path
         traced.
 
+        Args:
+            sums: of the same seed and options, or empty.
+            spp: samples a pixel.
+            seed: of all random numbers.
+            options: of the path tracer.
+
         Raises:
             RangeError: spp below 1.
             ShapeError: sums of another size than the picture.
@@ -294,7 +307,7 @@ class PhotonMap:
         sums.check_finite("PhotonMap.add_samples")
 
     def render(self, *, spp: int, seed: int, options: PathOptions = DEFAULTS) -> Accumulation:
-        """A picture of `spp` samples a pixel; arguments and errors as `add_samples`."""
+        """A picture of `spp` samples a pixel; `seed`, `options` and errors as of `add_samples`."""
         view = self.tracer.scene.camera
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options)

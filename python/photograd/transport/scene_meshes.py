@@ -33,7 +33,10 @@ from photograd.types import Array
 
 
 def camera_of_file(node: Node) -> Camera:
-    """The camera that a table [camera] with a `file` names: its place and vertical field of view.
+    """The camera that a table [camera] with a `file` names: its pose and vertical field of view.
+
+    Args:
+        node: the table.
 
     Raises:
         SceneError: no such file, or no such camera in it.
@@ -54,8 +57,13 @@ def camera_of_file(node: Node) -> Camera:
     return node.built(lambda: by_name[name].camera(width, height))
 
 
-def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Light]:
-    """The lights of a model at each place (4, 4), if a table of kind "mesh" wants them.
+def lights_of(node: Node, model: ModelFile, instances: Sequence[Array]) -> list[Light]:
+    """The lights of a model at each instance (4, 4), if a table of kind "mesh" wants them.
+
+    Args:
+        node: the table.
+        model: what its file holds.
+        instances: world_from_object of the model.
 
     Raises:
         SceneError: a model that moves.
@@ -68,11 +76,16 @@ def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Lig
     if model.lights and node.has("closing"):
         expected, got = "no motion of a file whose lights are wanted", "one"
         raise node.wrong("closing", expected, got, "leave out its lights, or its motion")
-    return [placed_light(light, place) for place in places for light in model.lights]
+    return [placed_light(light, instance) for instance in instances for light in model.lights]
 
 
 def placed_light(light: Light, world_from_object: Array) -> Light:
-    """A light of a mesh file, moved and turned; no scale changes what it sends."""
+    """A light of a mesh file, moved and turned; no scale changes what it sends.
+
+    Args:
+        light: of the file.
+        world_from_object: (4, 4).
+    """
 
     def at(position: Any) -> Array:
         moved: Array = world_from_object[:3, :3] @ np.asarray(position) + world_from_object[:3, 3]
@@ -94,7 +107,11 @@ def placed_light(light: Light, world_from_object: Array) -> Light:
 
 
 def textures_in(root: Node) -> dict[str, Texture]:
-    """The tables [textures.NAME] of a scene file."""
+    """The tables [textures.NAME] of a scene file.
+
+    Args:
+        root: of the scene file.
+    """
     if not root.has("textures"):
         return {}
     tables = root.table("textures")
@@ -111,7 +128,11 @@ def _texture(node: Node) -> Texture:
 
 
 def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
-    """`textures` and `normal_map` of a table [materials.NAME]."""
+    """`textures` and `normal_map` of a table [materials.NAME].
+
+    Args:
+        node: the table.
+    """
     uses: dict[str, TextureUse] = {}
     if node.has("textures"):
         table = node.table("textures")
@@ -123,7 +144,12 @@ def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
 
 
 def texture_use(node: Node, key: str) -> TextureUse:
-    """A texture's name, or its name and a channel."""
+    """A texture's name, or its name and a channel.
+
+    Args:
+        node: the table.
+        key: of the value.
+    """
     found = node.value(key)
     name, channel = found if isinstance(found, list) and len(found) == 2 else (found, 0)
     if not isinstance(name, str) or type(channel) is not int:
@@ -141,7 +167,11 @@ class ImportedMeshes:
     lights: list[Light] = field(default_factory=list)
 
     def update(self, other: ImportedMeshes) -> None:
-        """Add what another file brings."""
+        """Add what another file brings.
+
+        Args:
+            other: what is added.
+        """
         self.materials.update(other.materials)
         self.textures.update(other.textures)
         self.media.update(other.media)
@@ -155,21 +185,31 @@ def mesh_shapes(
 
     Names of the file get the shape's name and a slash in front. Emission is the file's where the
     table has none.
+
+    Args:
+        node: the table.
+        name: of the shape.
+        material: its name; None takes those of the file.
+        emission: (3,) radiance, or None.
     """
     path = node.path.parent / node.text("file")
     inner = matrix_of(node)
-    places = [matrix_of(place) for place in node.tables("places")] if node.has("places") else []
+    instances = (
+        [matrix_of(instance) for instance in node.tables("instances")]
+        if node.has("instances")
+        else []
+    )
     model = node.built(lambda: read_model(path))
     meshes = [shape for shape in model.shapes if isinstance(shape, MeshShape)]
     shapes = node.built(
-        lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
+        lambda: [_placed(mesh, name, material, emission, inner, instances) for mesh in meshes]
     )
-    lights = lights_of(node, model, [far @ inner for far in places or [np.eye(4)]])
+    lights = lights_of(node, model, [far @ inner for far in instances or [np.eye(4)]])
     imported = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
     imported.lights.extend(lights)
     if material is None:
         return shapes, imported
-    lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
+    lit = {shape.emission_texture.texture for shape in shapes if shape.emission_texture is not None}
     textures = {key: texture for key, texture in imported.textures.items() if key in lit}
     return shapes, ImportedMeshes(textures=textures, lights=lights)
 
@@ -180,19 +220,19 @@ def _placed(
     material: str | None,
     emission: Any,
     inner: Array,
-    places: list[Array],
+    instances: list[Array],
 ) -> MeshShape:
     """A shape of the file, moved, with the instances of the file and of the table multiplied."""
     vertices, faces, normals, uv = shape.vertices, shape.faces, shape.normals, shape.uv
-    own = [np.asarray(inner @ place) for place in shape.places]
+    own = [np.asarray(inner @ instance) for instance in shape.instances]
     if not own:
         vertices, faces, normals, uv = moved((vertices, faces, normals, uv), inner)
-    outer = places or [np.eye(4)]
+    outer = instances or [np.eye(4)]
     both = [far @ near for far in outer for near in (own or [np.eye(4)])]
     shining = shape.emission if emission is None else np.asarray(emission, np.float64)
-    glow = shape.glow if emission is None else None
-    if glow is not None:
-        glow = replace(glow, texture=f"{name}/{glow.texture}")
+    emission_texture = shape.emission_texture if emission is None else None
+    if emission_texture is not None:
+        emission_texture = replace(emission_texture, texture=f"{name}/{emission_texture.texture}")
     return replace(
         shape,
         name=f"{name}/{shape.name}",
@@ -202,8 +242,8 @@ def _placed(
         uv=uv,
         material=material or f"{name}/{shape.material}",
         emission=shining,
-        places=tuple(both) if own or places else (),
-        glow=glow,
+        instances=tuple(both) if own or instances else (),
+        emission_texture=emission_texture,
         interior=f"{name}/{shape.interior}" if material is None and shape.interior else None,
     )
 
@@ -228,7 +268,11 @@ def _renamed(model: ModelFile, name: str, looked_up: Filter | None) -> ImportedM
 
 
 def matrix_of(node: Node) -> Array:
-    """(4, 4): scale, then rotate about x, y and z, then translate."""
+    """(4, 4): scale, then rotate about x, y and z, then translate.
+
+    Args:
+        node: a table with `scale`, `rotate` and `translate`.
+    """
     matrix = np.eye(4)
     if node.has("scale"):
         found = node.value("scale")

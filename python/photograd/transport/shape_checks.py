@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
-from photograd._registry import SPECULAR, Parameter
+from photograd._registry import SPECULAR, ModelParameter
 from photograd.errors import RangeError, ShapeError, message
 from photograd.geometry.mesh import drop_degenerate
 from photograd.types import Array
@@ -18,42 +18,53 @@ FLAT = 1e-9
 """A mesh whose volume has shrunk to less than this part is flat, as far as rounding can tell."""
 
 
-def checked_place(name: str, matrix: Any) -> Array:
+def checked_instance(name: str, matrix: Any) -> Array:
     """World_from_object (4, 4) float64 of an instance of the shape `name`.
+
+    Args:
+        name: of the shape.
+        matrix: (4, 4).
 
     Raises:
         ShapeError: another shape.
         RangeError: numbers that are not finite, a determinant that is not positive.
     """
-    place = np.array(Arguments("MeshShape", np.float64).array(f"{name}.places", matrix, (4, 4)))
-    volume = float(np.linalg.det(place[:3, :3]))
+    instance = np.array(
+        Arguments("MeshShape", np.float64).array(f"{name}.instances", matrix, (4, 4))
+    )
+    volume = float(np.linalg.det(instance[:3, :3]))
     if not volume > 0:
         expected = "a positive determinant"
-        raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
-    return place
+        raise RangeError(message("MeshShape", f"{name}.instances", expected, volume))
+    return instance
 
 
-def checked_closing_places(
-    name: str, places: Sequence[Array], closing: Sequence[Any]
+def checked_closing_instances(
+    name: str, instances: Sequence[Array], closing: Sequence[Any]
 ) -> tuple[Array, ...]:
     """World_from_object (4, 4) of each instance when the shutter closes.
 
+    Args:
+        name: of the shape.
+        instances: world_from_object when it opens.
+        closing: (4, 4) of each.
+
     Raises:
-        ShapeError: another number of them than of places, or what `checked_place` refuses.
+        ShapeError: another number of them than of instances, or what `checked_instance` refuses.
         RangeError: a mesh that would be flat or mirrored at some moment in between.
     """
-    ends = tuple(checked_place(name, matrix) for matrix in closing)
-    starts = list(places) or [np.eye(4)]
+    ends = tuple(checked_instance(name, matrix) for matrix in closing)
+    starts = list(instances) or [np.eye(4)]
     if ends and len(ends) != len(starts):
-        expected = f"{len(starts)}, one for each place"
-        raise ShapeError(message("MeshShape", f"{name}.closing_places", expected, len(ends)))
+        expected = f"{len(starts)}, one for each instance"
+        raise ShapeError(message("MeshShape", f"{name}.closing_instances", expected, len(ends)))
     for start, end in zip(starts, ends, strict=False):
         least = _least_volume(start[:3, :3], end[:3, :3])
         if not least > FLAT:
             expected = "a positive determinant at every moment"
             remedy = "turn by less, points move straight on"
             raise RangeError(
-                message("MeshShape", f"{name}.closing_places", expected, least, remedy)
+                message("MeshShape", f"{name}.closing_instances", expected, least, remedy)
             )
     return ends
 
@@ -72,7 +83,13 @@ def _least_volume(a: Array, b: Array) -> float:
 
 
 def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:
-    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped."""
+    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped.
+
+    Args:
+        name: of the shape.
+        vertices: (V, 3).
+        faces: (F, 3).
+    """
     finite = np.asarray(np.isfinite(vertices).all(axis=1))
     sound = faces[finite[faces].all(axis=1)] if len(faces) else faces
     vertices = np.where(finite[:, None], vertices, np.float32(0))
@@ -89,6 +106,11 @@ def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, A
 def checked_color(function: str, argument: str, value: Any) -> Array:
     """(3,) float64, a copy.
 
+    Args:
+        function: on whose behalf errors speak.
+        argument: what they call the value.
+        value: three numbers.
+
     Raises:
         ShapeError: not three numbers.
         RangeError: numbers that are negative or not finite.
@@ -96,11 +118,16 @@ def checked_color(function: str, argument: str, value: Any) -> Array:
     return np.array(Arguments(function, np.float64).array(argument, value, (3,), low=0.0))
 
 
-def check_range(model: str, parameter: Parameter, value: Any) -> None:
+def check_range(model: str, parameter: ModelParameter, value: Any) -> None:
     """Whether a material may have this value: what is a share or a roughness has two ends.
 
     Derivatives and searches may step beyond; what somebody writes down there is a mistake, and
     draws negative or growing light. Other ranges, as of indices and exponents, say what is usual.
+
+    Args:
+        model: of reflectance.
+        parameter: of the model.
+        value: one number or three.
 
     Raises:
         RangeError: outside of the range.

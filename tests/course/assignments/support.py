@@ -26,8 +26,10 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.assignment.checks_file import load_beside, load_module
-from photograd_course.build.course_files import dossier_of
+from photograd_course.assignment.checks import load_check_modules
+from photograd_course.assignment.load import load_beside, load_module
+from photograd_course.assignment.manifest import read_manifest
+from photograd_course.build.course_files import build_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
 from photograd_course.build.rules import reading_findings
@@ -123,6 +125,15 @@ def lost(outcomes: list[Outcome]) -> set[str]:
 
 
 @functools.cache
+def load_checks_of(folder: Path) -> ModuleType:
+    """Everything that the files of an assignment's checks define, as one module."""
+    merged = ModuleType("checks")
+    for module in load_check_modules(read_manifest(folder)).values():
+        merged.__dict__.update(vars(module))
+    return merged
+
+
+@functools.cache
 def load_figures(folder: Path) -> ModuleType:
     return load_module("figures", (folder / "figures.py").read_text("utf-8"))
 
@@ -180,7 +191,7 @@ class AssignmentTests:
         return bundle_of(self.folder)
 
     def test_the_rules_that_read_find_nothing(self) -> None:
-        assert [str(each) for each in reading_findings(dossier_of(self.folder))] == []
+        assert [str(each) for each in reading_findings(build_of(self.folder))] == []
 
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle

@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.checks_file import load_module
+from photograd_course.assignment.load import load_module
 from photograd_course.grading import Status
 
 from course.assignments.support import (
@@ -16,6 +16,7 @@ from course.assignments.support import (
     AssignmentTests,
     apply_mutant,
     judge,
+    load_checks_of,
     load_figures,
     source,
 )
@@ -28,7 +29,7 @@ class TestGradientDescent(AssignmentTests):
 
 
 def checks() -> ModuleType:
-    return load_module("checks_of_01", (FOLDER / "checks.py").read_text("utf-8"))
+    return load_checks_of(FOLDER)
 
 
 def solution() -> ModuleType:

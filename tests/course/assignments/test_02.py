@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.checks_file import load_module
+from photograd_course.assignment.load import load_module
 from photograd_course.build.named import read_alternatives
 from photograd_course.grading.outcome import Status
 
@@ -22,6 +22,7 @@ from course.assignments.support import (
     AssignmentTests,
     apply_mutant,
     judge,
+    load_checks_of,
     source,
 )
 
@@ -37,7 +38,7 @@ def engine(mutant: str | None = None):
 
 
 def checks_module():
-    return load_module("checks_02", (FOLDER / "checks.py").read_text("utf-8"))
+    return load_checks_of(FOLDER)
 
 
 GATES = {

@@ -9,10 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.checks_file import load_module
 from photograd_course.assignment.drawing import draw as draw_question
+from photograd_course.assignment.load import load_module
 
-from course.assignments.support import ASSIGNMENTS, AssignmentTests, apply_mutant, judge, source
+from course.assignments.support import (
+    ASSIGNMENTS,
+    AssignmentTests,
+    apply_mutant,
+    judge,
+    load_checks_of,
+    source,
+)
 
 FOLDER = ASSIGNMENTS / "04_reflectance"
 WO, WI = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.36, 0.8]])
@@ -147,7 +154,7 @@ def test_the_six_functions_are_the_core_s(solution) -> None:
 
 
 def test_the_table_of_checks_is_that_of_a_finer_sum(solution) -> None:
-    checks = load_module("checks", (FOLDER / "checks.py").read_text("utf-8"))
+    checks = load_checks_of(FOLDER)
     wi, solid_angles = solution.hemisphere(160, 400)
     for rough, z, albedo in checks.MIRRORS:
         wo = np.tile([np.sqrt(1 - z * z), 0, z], (len(wi), 1))
@@ -158,7 +165,7 @@ def test_the_table_of_checks_is_that_of_a_finer_sum(solution) -> None:
 
 def test_right_samples_are_rejected_as_rarely_as_they_should(solution) -> None:
     """Of 400 judgements p is below 0.05 in 20, give or take; wrong samplers are always caught."""
-    checks = load_module("checks", (FOLDER / "checks.py").read_text("utf-8"))
+    checks = load_checks_of(FOLDER)
     rng, n = np.random.default_rng(11), 4000
     wo, r = np.tile(WO, (n, 1)), np.full(n, 0.6)
 

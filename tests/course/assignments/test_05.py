@@ -18,6 +18,7 @@ from course.assignments.support import (
     AssignmentTests,
     apply_mutant,
     judge,
+    load_checks_of,
     load_module,
     source,
 )
@@ -38,7 +39,7 @@ def solution():
 
 @pytest.fixture(scope="module")
 def checks():
-    return load_module("checks", (FOLDER / "checks.py").read_text("utf-8"))
+    return load_checks_of(FOLDER)
 
 
 def close(got, expected) -> None:

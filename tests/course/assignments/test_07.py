@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.checks_file import load_beside
+from photograd_course.assignment.load import load_beside
 from photograd_course.build.regions import strip_solution
 
 from course.assignments.support import (
@@ -19,7 +19,7 @@ from course.assignments.support import (
     AssignmentTests,
     apply_mutant,
     judge,
-    load_module,
+    load_checks_of,
     source,
 )
 
@@ -38,7 +38,7 @@ def solution():
 
 @pytest.fixture(scope="module")
 def checks():
-    return load_module("checks", (FOLDER / "checks.py").read_text("utf-8"))
+    return load_checks_of(FOLDER)
 
 
 def loaded(text: str):

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.checks_file import load_module
 from photograd_course.assignment.drawing import draw as draw_question
+from photograd_course.assignment.load import load_module
 
 from course.assignments.support import ASSIGNMENTS, AssignmentTests, apply_mutant, source
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import tempfile
 import time
 from collections.abc import Sequence
@@ -12,13 +13,13 @@ from typing import Any
 
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.manifest import Limits
-from photograd_course.grade.disclosure import for_student
-from photograd_course.grade.intake import take
-from photograd_course.grade.one import Case, grade_one
-from photograd_course.grade.report import Report
-from photograd_course.grade.report_gradescope import as_results
-from photograd_course.grade.report_html import render_page
 from photograd_course.grading.remote import Connection
+from photograd_course.submissions.disclosure import for_student
+from photograd_course.submissions.intake import take
+from photograd_course.submissions.one import Case, grade_one
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.report_gradescope import as_results
+from photograd_course.submissions.report_html import render_page
 from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.launch import open_worker
 
@@ -70,12 +71,11 @@ class Session:
         self._folder = tempfile.TemporaryDirectory(prefix="session-", ignore_cleanup_errors=True)
         self.vault = Path(self._folder.name) / "vault"  # where secrets lie, for the grader only
         self.vault.mkdir(mode=0o700)
-        for name in ("out", "bundle", "submissions"):
+        for name in ("out", "submissions"):
             (self.vault / name).mkdir()
         (self.vault / "out" / "results.json").write_text('{"score": 12}')
-        for path in ASSIGNMENT.iterdir():
-            if path.is_file():
-                (self.vault / "bundle" / path.name).write_bytes(path.read_bytes())
+        unwanted = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ASSIGNMENT, self.vault / "bundle", ignore=unwanted)
         (self.vault / "submissions" / "innocent.zip").write_bytes(solution_upload())
         self.bundle = _with_limits(read_folder(self.vault / "bundle", secret=SECRET), None)
         self.home = WorkerHome(self.bundle.manifest.imports)

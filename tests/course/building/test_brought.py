@@ -55,13 +55,13 @@ from photograd_course.grading import Number, Tolerance, check
 CLOSE = Tolerance(1e-12, "exact")
 
 
-@check("91.1.brought", task="91.1", points=1, calls=("weighted_sum",), tolerance=CLOSE)
+@check("91.1.brought", points=1, calls=("weighted_sum",), tolerance=CLOSE)
 def brought(t):
     """What you bring is right."""
     t.close("s", t.call("weighted_sum", np.ones(3), np.zeros(3), returns=Number()), 3.0)
 
 
-@check("91.1.double", task="91.1", points=1, calls=("double",), needs=("weighted_sum",),
+@check("91.1.double", points=1, calls=("double",), needs=("weighted_sum",),
        tolerance=CLOSE)
 def double(t):
     """It is twice."""
@@ -74,8 +74,10 @@ def folder(tmp_path: Path) -> Path:
     """An assignment 91 beside a copy of 90."""
     shutil.copytree(TOY, tmp_path / "90_toy")
     made = tmp_path / "91_twice"
-    made.mkdir()
-    for name, text in (("assignment.toml", MANIFEST), ("twice.py", MODULE), ("checks.py", CHECKS)):
+    (made / "checks").mkdir(parents=True)
+    texts = {"__init__": '"""Checks."""\n', "task_1": CHECKS}
+    files = {f"checks/{name}.py": text for name, text in texts.items()}
+    for name, text in {"assignment.toml": MANIFEST, "twice.py": MODULE, **files}.items():
         (made / name).write_text(text, encoding="utf-8")
     return made
 

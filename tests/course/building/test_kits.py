@@ -47,8 +47,12 @@ def test_public_checks_hold_neither_hidden_ones_nor_keys(broken: Broken) -> None
     broken.change("questions.toml", 'text = "What becomes of -3?"', tricky)
     broken.change("questions.toml", 'id = "17.p1"', 'id = "17.p1"\nanswer = "a"')
     files = public_files(broken.folder)
-    assert b"17.1.known" in files["checks.py"]
-    assert b"17.1.random" not in files["checks.py"]
+    assert {path for path in files if path.endswith(".py")} == {
+        "checks/__init__.py",
+        "checks/task_1.py",
+    }
+    assert b"17.1.known" in files["checks/task_1.py"]
+    assert b"17.1.random" not in b"".join(files.values())
     kit = find_kit("17", broken.folder.parent)
     assert [check.id for check in kit.bundle.checks] == ["17.1.known"]
     assert [(q.answer, q.because) for q in kit.bundle.questions] == [("", ""), ("", "")]

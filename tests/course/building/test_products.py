@@ -12,7 +12,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.gradescope_run import main as run_gradescope
 from photograd_course.build.hint_table import public_hints, read_hints
 from photograd_course.build.products import make_products, publishable
@@ -31,7 +31,7 @@ COURSE = ROOT / "python" / "photograd_course"
 
 
 def products(folder: Path, cache: Path) -> dict[str, bytes]:
-    return make_products(dossier_of(folder, secret=SECRET, cache=cache)).files()
+    return make_products(build_of(folder, secret=SECRET, cache=cache)).files()
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def made(scaffold: Path, cache: Path) -> dict[str, bytes]:
 
 def test_there_are_five_products(made: dict[str, bytes]) -> None:
     tops = {path.partition("/")[0] for path in made}
-    assert tops == {"kit", "checks", "solution", "hidden.zip", "gradescope.zip"}
+    assert tops == {"kit", "public", "solution", "hidden.zip", "gradescope.zip"}
     assert b"return 2.0 * x" in made["solution/light.py"]
     assert {"solution/mutants.toml", "solution/kills.png"} < set(made)
     assert "squared        x  x\n" in made["solution/kills.txt"].decode()
@@ -59,16 +59,16 @@ def test_the_same_input_gives_the_same_bytes(
 
 def test_the_sealed_bundle_knows_mistakes_in_hidden_checks(made: dict[str, bytes]) -> None:
     bundle = open_bundle(made["hidden.zip"], SECRET)
-    public = json.loads(made["checks/hints.json"])
+    public = json.loads(made["public/hints.json"])
     assert public.items() < dict(bundle.hints).items()
     assert "Your result equals x itself: it is not doubled." in bundle.hints.values()
 
 
 def test_public_hints_tell_nothing_without_the_wrong_answer(scaffold: Path, cache: Path) -> None:
-    dossier = dossier_of(scaffold, cache=cache)
-    table = public_hints(dossier)
-    assert sorted(table.values()) == sorted(mutant.diagnosis for mutant in dossier.mutants)
-    outcome = dossier.mutant_verdicts["squared"].outcomes[0]
+    build = build_of(scaffold, cache=cache)
+    table = public_hints(build)
+    assert sorted(table.values()) == sorted(mutant.diagnosis for mutant in build.mutants)
+    outcome = build.mutant_verdicts["squared"].outcomes[0]
     key = hint_key(b"public".hex(), "17.1.known", outcome["details"]["fingerprint"])
     assert table[key].startswith("Your result is the square")
 
@@ -76,7 +76,7 @@ def test_public_hints_tell_nothing_without_the_wrong_answer(scaffold: Path, cach
 @pytest.mark.parametrize("name", ["00_setup"])
 def test_committed_hints_are_those_of_today(name: str, cache: Path) -> None:
     folder = ROOT / "assignments" / name
-    assert read_hints(folder) == public_hints(dossier_of(folder, cache=cache)) != {}
+    assert read_hints(folder) == public_hints(build_of(folder, cache=cache)) != {}
 
 
 def test_the_publishable_tree_holds_no_answer(
@@ -86,8 +86,14 @@ def test_the_publishable_tree_holds_no_answer(
     assert run(["course", "build", "--no-answers", "--out", str(tmp_path)], plugins=[]) == 0
     tree = tmp_path / "assignments" / "90_toy"
     names = {path.relative_to(tree).as_posix() for path in tree.rglob("*")}
-    assert names == {"assignment.toml", "checks.py", "hints.json", "toy.py"}
-    everything = b"".join((tree / name).read_bytes() for name in names)
+    assert names == {
+        "assignment.toml",
+        "checks",
+        *(f"checks/{name}.py" for name in ("__init__", "common", "task_1", "task_2", "task_3")),
+        "hints.json",
+        "toy.py",
+    }
+    everything = b"".join(path.read_bytes() for path in tree.rglob("*") if path.is_file())
     for answer in (
         b"np.exp(-x)",
         b"falling",
@@ -121,7 +127,7 @@ def test_a_whole_build_and_a_build_that_fails(
     sealed = (out / "17_light" / "hidden.zip").read_bytes()
     secret = (tmp_path / "out.secret" / "secret.txt").read_bytes().strip()
     assert open_bundle(sealed, secret).manifest.id == "17"
-    broken.change("checks.py", "points=35", "points=34")
+    broken.change("checks/hidden/task_1.py", "points=35", "points=34")
     assert run(command, plugins=[]) == 1
     assert "the manifest promises 75 points, the parts add up to 74" in capsys.readouterr().err
     assert (out / "17_light" / "hidden.zip").read_bytes() == sealed

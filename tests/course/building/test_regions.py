@@ -4,12 +4,7 @@ import ast
 
 import pytest
 from photograd_course.build.markers import RegionError
-from photograd_course.build.regions import (
-    find_regions,
-    solution_parts,
-    strip_hidden,
-    strip_solution,
-)
+from photograd_course.build.regions import find_regions, solution_parts, strip_solution
 
 MODULE = '''\
 """Doc."""
@@ -73,15 +68,9 @@ def test_parts_of_the_solution() -> None:
 
 
 def test_markers_inside_of_strings_mean_nothing() -> None:
-    text = 'a = """\n# >>> solution 01.1\n# <<< nonsense\n"""\nb = "# >>> hidden"\n'
+    text = 'a = """\n# >>> solution 01.1\n# <<< nonsense\n"""\nb = "# >>> student"\n'
     assert find_regions(text) == ()
     assert strip_solution(text) == text
-    assert strip_hidden(text) == text
-
-
-def test_hidden_parts_vanish() -> None:
-    text = "a = 1\n\n\n# >>> hidden\nb = 2\n# <<< hidden\n\n\nc = 3\n"
-    assert strip_hidden(text) == "a = 1\n\n\nc = 3\n"
 
 
 @pytest.mark.parametrize(
@@ -90,11 +79,11 @@ def test_hidden_parts_vanish() -> None:
         ("# >>> solution 01.1\na = 1\n", 1),  # no end
         ("a = 1\n# <<< solution\n", 2),  # no begin
         ("# >>> solution 01.1\n# >>> solution 01.2\n", 2),  # nested
-        ("# >>> solution 01.1\na = 1\n# <<< hidden\n", 3),  # another's end
+        ("# >>> solution 01.1\na = 1\n# <<< student\n", 3),  # another's end
         ("a = 1\n# >>> solutoin 01.1\n", 2),  # misspelt
         ("# >>> solution\n", 1),  # of which task?
         ("#>>> solution 01.1\n", 1),  # no space
-        ("# >>> hidden 01.1\n", 1),  # no task is meant here
+        ("# >>> student 01.1\n", 1),  # no task is meant here
         ("a = 1  # >>> solution 01.1\n", 1),  # not alone on its line
         ("a = 1\n# <<< solution 01.1\n", 2),  # the end names no task
         ("# >>> solution 01.1\n# <<< solution\n", 1),  # nothing in it
@@ -106,11 +95,3 @@ def test_hidden_parts_vanish() -> None:
 def test_a_wrong_marker_is_refused_with_file_and_line(text: str, line: int) -> None:
     with pytest.raises(RegionError, match=rf"descent\.py, line {line}: expected"):
         strip_solution(text, "descent.py")
-
-
-def test_hidden_regions_belong_into_checks_and_solutions_into_modules() -> None:
-    hidden = "# >>> hidden\na = 1\n# <<< hidden\n"
-    with pytest.raises(RegionError, match="line 1"):
-        strip_solution(hidden)
-    with pytest.raises(RegionError, match="line 1"):
-        strip_hidden(hidden.replace("hidden", "solution", 1).replace("solution", "solution 01.1"))

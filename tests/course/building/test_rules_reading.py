@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.leak_words import says_something, shingles_of
 from photograd_course.build.rules import READING
 
@@ -15,11 +15,11 @@ from .support import TOY, Broken
 @pytest.mark.parametrize("rule", list(READING))
 def test_the_scaffold_and_the_toy_keep_the_rule(rule: str, scaffold: Path) -> None:
     for folder in (scaffold, TOY):
-        assert list(READING[rule](dossier_of(folder))) == []
+        assert list(READING[rule](build_of(folder))) == []
 
 
 def test_markers(broken: Broken) -> None:
-    broken.change("light.py", "# <<< solution", "# <<< hidden")
+    broken.change("light.py", "# <<< solution", "# <<< student")
     assert broken.broken_rules() == {"markers"}
 
 
@@ -29,11 +29,6 @@ def test_markers_of_unknown_tasks(broken: Broken) -> None:
         "light.py marks a solution of 17.2, which is no task of the manifest",
         "light.py marks no solution of task 17.1",
     ]
-
-
-def test_markers_in_checks(broken: Broken) -> None:
-    broken.change("checks.py", "# <<< hidden\n", "")
-    assert broken.broken_rules() == {"markers"}
 
 
 def test_compiles(broken: Broken) -> None:
@@ -76,7 +71,7 @@ def test_faces_of_functions_that_the_manifest_names(broken: Broken) -> None:
 
 
 def test_points(broken: Broken) -> None:
-    broken.change("checks.py", "points=35", "points=34")
+    broken.change("checks/hidden/task_1.py", "points=35", "points=34")
     broken.change("questions.toml", "points = 20", "points = 21")
     assert [text.partition(":")[0] for text in broken.says("points")] == ["code", "questions"]
 
@@ -114,7 +109,7 @@ def solve_with_names(broken: Broken) -> None:
     ("path", "old", "new"),
     [
         ("handout.md", "Write", "The glimmer. Write"),
-        ("checks.py", "1, 2 and 5", "glimmer 1, 2 and 5"),
+        ("checks/task_1.py", "1, 2 and 5", "glimmer 1, 2 and 5"),
         ("questions.toml", "What becomes", "What glimmer becomes"),
         ("explore.py", "# Play", "# glimmer Play"),
     ],
@@ -151,7 +146,6 @@ def test_leaked_names_in_another_kit(broken: Broken) -> None:
     for path, text in {
         "assignment.toml": (broken.folder / "assignment.toml").read_text("utf-8"),
         "light.py": "def twice(x): pass  # glimmer\n",
-        "checks.py": "",
     }.items():
         (other / path).write_text(text, "utf-8")
     assert "kits/18_other/kit/light.py" in broken.says("leaked names")[0]
@@ -165,7 +159,7 @@ def test_leaked_shingles(broken: Broken) -> None:
     said = broken.says("leaked shingles")
     assert said == [
         f"'gain * slope + offset' of the solution stands in {place}/adapters.py"
-        for place in ("checks", "kit")
+        for place in ("kit", "public")
     ]
     # What the handout gives in a fence, students may have.
     broken.change("handout.md", "Write", f"```python\n{line}\n```\n\nWrite")

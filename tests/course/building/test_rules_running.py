@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.evidence import evidence
 from photograd_course.build.matrix import cells, kills
 from photograd_course.build.rules import findings, seed_findings
@@ -17,25 +17,27 @@ from .support import SECRET, Broken
 
 
 def test_the_scaffold_keeps_every_rule_for_any_secret(scaffold: Path, cache: Path) -> None:
-    assert findings(dossier_of(scaffold, cache=cache)) == []
-    assert seed_findings(dossier_of(scaffold, secret=SECRET, cache=cache)) == []
+    assert findings(build_of(scaffold, cache=cache)) == []
+    assert seed_findings(build_of(scaffold, secret=SECRET, cache=cache)) == []
 
 
 def test_solution(broken: Broken) -> None:
-    broken.change("checks.py", "[2.0, 4.0, 10.0]", "[2.0, 4.0, 11.0]")
+    broken.change("checks/task_1.py", "[2.0, 4.0, 10.0]", "[2.0, 4.0, 11.0]")
     assert broken.broken_rules() == {"solution"}
     assert "does not pass 17.1.known" in broken.says("solution")[0]
 
 
 def test_starter(broken: Broken) -> None:
     broken.change(
-        "checks.py", "    known = np", '    t.require(True, "")\n    return\n    known = np'
+        "checks/task_1.py", "    known = np", '    t.require(True, "")\n    return\n    known = np'
     )
     assert broken.says("starter") == ["the starter passes 17.1.known"]
 
 
 def test_starter_that_crashes(broken: Broken) -> None:
-    broken.change("checks.py", "    known = np", '    t.require(False, "no")\n    known = np')
+    broken.change(
+        "checks/task_1.py", "    known = np", '    t.require(False, "no")\n    known = np'
+    )
     assert (
         "17.1.known should say of the starter that it is not implemented"
         in broken.says("starter")[0]
@@ -55,7 +57,7 @@ def test_mutants(broken: Broken) -> None:
 def test_mutants_that_no_longer_apply(broken: Broken) -> None:
     broken.change("light.py", "2.0 * x", "x * 2.0")
     assert any(
-        "'return 2.0 * x' once in the solution, got 0" in str(f) for f in findings(broken.dossier)
+        "'return 2.0 * x' once in the solution, got 0" in str(f) for f in findings(broken.build)
     )
 
 
@@ -71,16 +73,16 @@ def test_mutants_that_no_longer_apply(broken: Broken) -> None:
 def test_rows_of_another_form(broken: Broken, row: str, what: str) -> None:
     path = broken.folder / "mutants.toml"
     path.write_text(f"{path.read_text('utf-8')}{row}\n", "utf-8")
-    assert what in str(findings(broken.dossier)[0])
+    assert what in str(findings(broken.build)[0])
 
 
 def test_which_checks_kill_a_mutant_comes_from_the_run(broken: Broken) -> None:
-    assert kills(broken.dossier) == {
+    assert kills(broken.build) == {
         "17.1.known": ("not_doubled", "squared"),
         "17.1.random": ("not_doubled", "squared"),
     }
     broken.change("mutants.toml", "return x * x", "return np.abs(2.0 * x)")
-    assert (known := kills(broken.dossier))["17.1.known"] == ("not_doubled",)
+    assert (known := kills(broken.build))["17.1.known"] == ("not_doubled",)
     # The picture shows in another color what a single check kills.
     assert cells(["not_doubled", "squared"], known).tolist() == [[1, 1], [0, 2]]
 
@@ -121,7 +123,7 @@ def test_automatic(broken: Broken) -> None:
 
 
 def test_sole(broken: Broken) -> None:
-    broken.change("checks.py", 'sole="random', 'hint="random')
+    broken.change("checks/hidden/task_1.py", 'sole="random', 'hint="random')
     assert "17.1.random is never the only check to notice a mutant" in broken.says("sole")[0]
     # A mistake that shows at negative values only: the public check has none.
     path = broken.folder / "mutants.toml"
@@ -131,7 +133,7 @@ def test_sole(broken: Broken) -> None:
 
 
 def test_sole_by_an_automatic_mutant(broken: Broken) -> None:
-    broken.change("checks.py", 'sole="random', 'hint="random')
+    broken.change("checks/hidden/task_1.py", 'sole="random', 'hint="random')
     broken.change("light.py", "return 2.0 * x", "return 2.0 * x if x[0] >= 1.0 else x * 2.0")
     # "x * 2.0 -> x" shows only where x[0] < 1, and the public check has x[0] = 1.
     assert broken.says("sole") == []
@@ -147,7 +149,7 @@ def test_hints(broken: Broken) -> None:
 
 def test_a_check_that_falters_is_reported(broken: Broken) -> None:
     broken.change(
-        "checks.py",
+        "checks/task_1.py",
         "    t.close",
         "    assert t.call('twice', known, returns=Array((3,)))[0] == 2.0\n    t.close",
     )

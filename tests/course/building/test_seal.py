@@ -75,7 +75,7 @@ def test_a_zip_made_anew_is_refused(sealed: bytes, how: str) -> None:
     elif how == "added":
         files["answers.py"] = b""
     elif how == "replaced":
-        files["checks.py"] = files["checks.py"].replace(b"points=3", b"points=9")
+        files["checks/task_1.py"] = files["checks/task_1.py"].replace(b"points=3", b"points=9")
     elif how == "points":
         files["seal.json"] = files["seal.json"].replace(b'"points": 3', b'"points": 9')
     else:

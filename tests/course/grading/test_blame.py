@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.grading import Array, Check, Number, Outcome, Status, Trial, check
-from photograd_course.grading.adjoint_gate import require_gradients
+from photograd_course.grading.adjoint_gate import agrees_with_finite_differences
 from photograd_course.grading.failures import GraderFault
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.runner import run_checks
@@ -37,7 +37,7 @@ def outcome(bundle: Bundle) -> Callable[..., Outcome]:
             opened.append(None)
             return LocalStudent({"toy": control or ""})
 
-        made: Check = check("90.1.x", task="90.1", points=1, calls=("weighted_sum",))(body)
+        made: Check = check("90.1.x", points=1, calls=("weighted_sum",))(body)
         (found,) = run_checks(
             [made],
             bundle.setting,
@@ -79,7 +79,7 @@ def test_a_check_that_breaks_for_this_submission_alone_has_failed(
 
 def differences_of_your_own(t: Trial) -> None:
     """Its expected values come from the submission, and may overflow."""
-    require_gradients(
+    agrees_with_finite_differences(
         t,
         {"x": -np.exp([-0.5])},
         lambda p: t.call("weighted_sum", np.ones(1), p["x"], returns=Number()),

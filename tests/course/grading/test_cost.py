@@ -57,7 +57,7 @@ def trial() -> Trial:
         **dict.fromkeys(names, lambda x: float(np.sum(np.exp(-x)))),
         **dict.fromkeys(("backward", "by_steps", "remembered"), lambda x, g: -g * np.exp(-x)),
     )
-    made = check("1.x", task="1", points=1, calls=(), tolerance=Tolerance(1e-9, "tests"))(body)
+    made = check("1.x", points=1, calls=(), tolerance=Tolerance(1e-9, "tests"))(body)
     return Trial(made, LocalStudent({"m": CODE}), seed=(1,), module="m", reference=reference)
 
 

@@ -31,25 +31,25 @@ SLOW = CODE.replace(
 EXACT = Tolerance(1e-12, "tests")
 
 
-@check("1.1.value", task="1.1", points=3, calls=("slope",), tolerance=EXACT)
+@check("1.1.value", points=3, calls=("slope",), tolerance=EXACT)
 def value(t: Trial) -> None:
     """The derivative is right."""
     t.close("d_x", t.call("slope", t.rng.random(3) * 0, returns=Array((3,))), [-1.0] * 3)
 
 
-@check("1.1.other", task="1.1", points=2, calls=("other",), tolerance=EXACT)
+@check("1.1.other", points=2, calls=("other",), tolerance=EXACT)
 def other(t: Trial) -> None:
     """Another function of the task."""
     t.close("x", t.call("other", 1.0, returns=Number()), 1.0)
 
 
-@check("1.2.later", task="1.2", points=2, calls=("slope",), tolerance=EXACT)
+@check("1.2.later", points=2, calls=("slope",), tolerance=EXACT)
 def later(t: Trial) -> None:
     """A later task that uses it."""
     value.body(t)
 
 
-@check("1.1.cost", task="1.1", points=1, calls=("slope",), tolerance=EXACT)
+@check("1.1.cost", points=1, calls=("slope",), tolerance=EXACT)
 def cost(t: Trial) -> None:
     """It is cheap."""
     value.body(t)

@@ -88,7 +88,7 @@ def test_not_implemented_is_said_also_where_an_earlier_task_lacks(bundle: Bundle
 
 
 def _one(body: Any) -> Check:
-    return check("x", task="1", points=1, calls=("weighted_sum",))(body)
+    return check("1.x", points=1, calls=("weighted_sum",))(body)
 
 
 def verdict(body: Any, text: str = GOOD) -> Outcome:

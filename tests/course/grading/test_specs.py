@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from photograd_course.grading import (
@@ -25,6 +27,11 @@ GOOD = [
     (Number(), (1 << 63) - 1),
     (Array((2,), finite=False), np.array([0.0, np.nan])),
     (Number(), np.array(1.0)),
+    (Number(finite=False, above=0.0), math.inf),
+    (Array((None, 3)), np.zeros((0, 3))),
+    (Array((None, 3)), np.zeros((7, 3))),
+    (Array((None,), "i8"), np.zeros(4, np.int64)),
+    (Array((2,), finite=False, above=0.0), np.array([1e-9, np.inf])),
     (Integer(0, 3), 3),
     (Truth(), False),
     (Text(), "x"),
@@ -42,6 +49,15 @@ BAD = [
     (Array((2,)), np.array([0.0, np.nan])),
     (Array((2,)), np.array([np.inf, 0.0])),
     (Array((2,)), None),
+    (Array((None, 3)), np.zeros((3, 2))),
+    (Array((None, 3)), np.zeros(3)),
+    (Array((None,), "i8"), np.zeros(3)),
+    (Array((2,), finite=False, above=0.0), np.array([1.0, 0.0])),
+    (Array((2,), finite=False, above=0.0), np.array([np.nan, 1.0])),
+    (Array((2,), above=0.0), np.array([1.0, np.inf])),
+    (Number(above=0.0), 0.0),
+    (Number(finite=False, above=0.0), math.nan),
+    (Number(above=0.0), math.inf),
     (Number(), float("nan")),
     (Number(), float("inf")),
     (Number(), True),
@@ -86,3 +102,14 @@ def test_a_service_looks_at_what_it_is_asked() -> None:
 def test_a_forgotten_return_is_recognized() -> None:
     with pytest.raises(CheckFailed, match="return statement"):
         Array((1,)).require(None, "f")
+
+
+def test_free_axes_and_bounds_are_named() -> None:
+    with pytest.raises(CheckFailed, match=r"shape \(any, 3\) and dtype int64, got shape \(2, 2\)"):
+        Array((None, 3), "i8").require(np.zeros((2, 2), np.int64), "boxes")
+    with pytest.raises(
+        CheckFailed, match=r"t: expected values above 0, or infinity, got nan at ind"
+    ):
+        Array((2,), finite=False, above=0.0).require(np.array([1.0, np.nan]), "t")
+    with pytest.raises(CheckFailed, match=r"expected a float above 0, got -1"):
+        Number(above=0.0).require(-1.0, "t")

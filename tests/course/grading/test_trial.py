@@ -27,9 +27,9 @@ def trial(visibility: str = "public", tolerance: Tolerance | None = TIGHT) -> Tr
     def body(t: Trial) -> None:
         """Something holds."""
 
-    made: Check = check(
-        "1.x", task="1", points=1, calls=("f",), visibility=visibility, tolerance=tolerance
-    )(body)
+    made: Check = check("1.x", points=1, calls=("f",), visibility=visibility, tolerance=tolerance)(
+        body
+    )
     return Trial(made, LocalStudent({"m": CODE}), seed=(1,), module="m")
 
 
@@ -133,11 +133,11 @@ def test_fingerprints_agree_up_to_rounding_and_differ_otherwise() -> None:
 
 def test_a_check_needs_a_title_and_points() -> None:
     with pytest.raises(RangeError, match="docstring"):
-        check("x", task="1", points=1, calls=())(lambda _t: None)
+        check("1.x", points=1, calls=())(lambda _t: None)
     with pytest.raises(RangeError, match="points"):
-        check("x", task="1", points=0, calls=())
+        check("1.x", points=0, calls=())
     with pytest.raises(RangeError, match="visibility"):
-        check("x", task="1", points=1, calls=(), visibility="open")
+        check("1.x", points=1, calls=(), visibility="open")
 
 
 def test_a_service_may_give_the_verdict_whatever_the_submission_makes_of_it() -> None:
@@ -147,7 +147,7 @@ def test_a_service_may_give_the_verdict_whatever_the_submission_makes_of_it() ->
     def body(t: Trial) -> None:
         """Something holds."""
 
-    whole = check("1.x", task="1", points=1, calls=("quiet",))(body)
+    whole = check("1.x", points=1, calls=("quiet",))(body)
 
     def stop(_x: float) -> float:
         raise CheckFailed("called too often")

@@ -122,7 +122,7 @@ def test_a_starved_worker_is_no_fault_of_the_student(
         """It is answered."""
         t.call("f", 0.0, returns=Number())
 
-    made = check("1.x", task="1", points=1, calls=("f",), seconds=0.3)(body)
+    made = check("1.x", points=1, calls=("f",), seconds=0.3)(body)
     (found,) = run_checks(
         [made],
         lambda _: Setting("toy", (1,)),

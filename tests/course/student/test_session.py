@@ -28,7 +28,7 @@ def made(task: str, calls: tuple[str, ...], needs: tuple[str, ...] = ()) -> Chec
     def body(t: Trial) -> None:
         """Something holds."""
 
-    found: Check = check(f"{task}.x", task=task, points=1, calls=calls, needs=needs)(body)
+    found: Check = check(f"{task}.x", points=1, calls=calls, needs=needs)(body)
     return found
 
 

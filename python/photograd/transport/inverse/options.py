@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from photograd._checks import require_choices
-from photograd.errors import RangeError, message
+from photograd._checks import require_bounds, require_choices
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene
 from photograd.types import Array
@@ -18,11 +17,11 @@ LOSSES: tuple[Loss, ...] = get_args(Loss)
 
 @dataclass(frozen=True)
 class RecoveryOptions:
-    """How unknowns are looked for.
+    """How parameters are found.
 
     Attributes:
         steps: of gradient descent.
-        spp: samples a pixel of each of the two halves of a step (see `cross_loss`); powers of two
+        spp: samples a pixel of each of the two halves of a step (`dual_buffer_loss`); powers of two
             are spread most evenly.
         learning_rate: of Adam, in units of logits and logarithms: about what a step changes at
             first.
@@ -31,7 +30,7 @@ class RecoveryOptions:
         loss: "squared" difference of radiance, or "relative": divided by the target plus its
             channel's mean.
         views: pictures that a step looks at, drawn at random; 0 looks at all.
-        resample_every: steps after which the tracer is built again where a light is unknown, so
+        resample_every: steps after which the tracer is built again where a light is a parameter, so
             that lights and texels are asked as often as their brightness now warrants.
         path: options of the path tracer.
         seed: of all random numbers, 0 to 2^64 - 1.
@@ -51,19 +50,12 @@ class RecoveryOptions:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name, least in (("steps", 1), ("spp", 1), ("views", 0), ("resample_every", 1)):
-            if getattr(self, name) < least:
-                got = getattr(self, name)
-                raise RangeError(message("RecoveryOptions", name, f"at least {least}", got))
-        if not self.learning_rate > 0:
-            got = self.learning_rate
-            raise RangeError(message("RecoveryOptions", "learning_rate", "above 0", got))
-        if not 0 < self.final_rate <= 1:
-            got = self.final_rate
-            raise RangeError(message("RecoveryOptions", "final_rate", "above 0, at most 1", got))
         require_choices(self)
-        if not 0 <= self.seed < 2**64:
-            raise RangeError(message("RecoveryOptions", "seed", "0 to 2^64 - 1", self.seed))
+        require_bounds(self, "steps", "spp", "resample_every", low=1)
+        require_bounds(self, "views", low=0)
+        require_bounds(self, "learning_rate", above=0)
+        require_bounds(self, "final_rate", above=0, high=1)
+        require_bounds(self, "seed", low=0, high=2**64 - 1)
 
 
 # What is reported at the end.
@@ -74,7 +66,7 @@ class RecoveryResult:
     """What was found.
 
     Attributes:
-        params: {name: value} of the unknowns, float64.
+        params: {name: value} of what was found, float64.
         scene: with these values.
         history: (steps, 3): step, loss, learning rate. The loss is that of two half pictures: right
             on average, and below 0 now and then near the end.

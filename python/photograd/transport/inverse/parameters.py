@@ -58,7 +58,11 @@ class Activation:
         return np.asarray(d_value * (value - self.lo) * (self.hi - value) / (self.hi - self.lo))
 
     def inverse(self, value: Array) -> Array:
-        """What gives these parameters; those on a bound are first moved inside by `MARGIN`."""
+        """What gives these parameters; those on a bound are first moved inside by `MARGIN`.
+
+        Args:
+            value: parameters inside of the bounds.
+        """
         value = np.asarray(value, np.float64)
         if self.kind == "log":
             return np.asarray(log(np.maximum(value - self.lo, MARGIN)))
@@ -120,11 +124,11 @@ def _light_with(light: Light, parameter: str, value: Any) -> Light:
     return changed
 
 
-# What a recovery may change: a parameter of the tracer, between bounds.
+# What inverse rendering may change: a parameter of the tracer, between bounds.
 
 
 @dataclass(frozen=True, eq=False)
-class Unknown:
+class Parameter:
     """A parameter that is to be found.
 
     Attributes:
@@ -150,17 +154,16 @@ class Unknown:
 
     def __post_init__(self) -> None:
         require_choices(self)
-        if not (math.isfinite(self.rate) and self.rate > 0):
-            raise RangeError(message("Unknown", f"{self.name}.rate", "above 0", self.rate))
+        Arguments("Parameter").number(f"{self.name}.rate", self.rate, above=0)
         if self.bounds is None:
             return
         lo, hi = self.bounds
         if not (math.isfinite(lo) and lo < hi):
-            raise RangeError(message("Unknown", f"{self.name}.bounds", "lo < hi", self.bounds))
+            raise RangeError(message("Parameter", f"{self.name}.bounds", "lo < hi", self.bounds))
         expected = "log" if math.isinf(hi) else "logit"
         if self.activation not in (None, expected):
             got = f"{self.activation} for bounds {self.bounds}"
-            raise RangeError(message("Unknown", f"{self.name}.activation", expected, got))
+            raise RangeError(message("Parameter", f"{self.name}.activation", expected, got))
 
     def activation_in(self, scene: Scene) -> Activation:
         """How numbers become this parameter.
@@ -174,11 +177,14 @@ class Unknown:
             hi, kind = math.inf, "log"
         if self.activation == "logit" and kind == "log":
             got = "none"
-            raise RangeError(message("Unknown", f"{self.name}.bounds", "an upper bound", got))
+            raise RangeError(message("Parameter", f"{self.name}.bounds", "an upper bound", got))
         return Activation(kind, float(lo), float(hi))
 
     def start_in(self, tracer: PathTracer) -> Array:
         """The first value, float64, of the parameter's shape.
+
+        Args:
+            tracer: of the scene.
 
         Raises:
             RangeError: no such parameter, one whose derivative is incomplete, or a start that is
@@ -188,13 +194,13 @@ class Unknown:
         if self.name not in tracer.params:
             known = choose_from(self.name, tracer.params)
             expected = "a parameter of the scene"
-            raise RangeError(message("recover", "unknowns", expected, f"'{self.name}'", known))
-        require_whole("recover", "unknowns", [self.name], tracer.incomplete)
+            raise RangeError(message("recover", "parameters", expected, f"'{self.name}'", known))
+        require_whole("recover", "parameters", [self.name], tracer.incomplete)
         own = np.asarray(tracer.params[self.name], np.float64)
         if self.start is None:
             return own.copy()
         activation = self.activation_in(tracer.scene)
-        call = Arguments("Unknown", np.float64)
+        call = Arguments("Parameter", np.float64)
         start = call.array(
             f"{self.name}.start",
             self.start,
@@ -207,7 +213,12 @@ class Unknown:
 
 
 def default_bounds(name: str, scene: Scene) -> tuple[float, float]:
-    """(lo, hi) of a parameter of a scene, hi infinite for what shines."""
+    """(lo, hi) of a parameter of a scene, hi infinite for what shines.
+
+    Args:
+        name: of the parameter.
+        scene: that has it.
+    """
     kind, _, rest = name.partition(".")
     if kind == "materials":
         material, _, parameter = rest.rpartition(".")
@@ -220,5 +231,9 @@ def default_bounds(name: str, scene: Scene) -> tuple[float, float]:
 
 
 def is_light(name: str) -> bool:
-    """Whether a parameter is of something that shines, and so decides how often it is asked."""
+    """Whether a parameter is of something that shines, and so decides how often it is asked.
+
+    Args:
+        name: of the parameter.
+    """
     return name.partition(".")[0] in ("emission", "environment", "lights")

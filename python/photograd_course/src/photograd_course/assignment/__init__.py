@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .checks_file import load_checks
+from .checks import load_checks
 from .manifest import Limits, Manifest, Task, read_manifest
 
 __all__ = ["Limits", "Manifest", "Task", "load_checks", "read_manifest"]

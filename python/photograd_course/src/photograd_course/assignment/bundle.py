@@ -18,7 +18,8 @@ from ..grading.check import Check
 from ..grading.remote import Hand
 from ..grading.runner import Setting
 from .brought import brought_sources
-from .checks_file import load_beside, load_checks, load_module
+from .checks import load_checks
+from .load import load_beside, load_module
 from .manifest import Manifest, read_manifest
 from .questions import Question, read_questions
 
@@ -91,7 +92,7 @@ def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
     """The bundle of an assignment's source folder, or of an unpacked public one.
 
     In a source folder the graded module is the solution; a public folder has none beside its
-    `checks.py`.
+    `checks/`.
     """
     manifest = read_manifest(folder)
     module = folder / f"{manifest.module}.py"

@@ -17,14 +17,15 @@ from typing import Any
 import numpy as np
 
 from ..assignment.brought import brought_sources
+from ..assignment.check_files import check_files
 from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
 from ..errors import Error, message
 
 WORKERS = 2
 WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
-# Files of a folder that decide what becomes of a text; and of this package likewise.
-DECIDING = ("assignment.toml", "checks.py", "adapters.py")
+# Files of a folder that decide what becomes of a text, its checks apart; and of this package.
+DECIDING = ("assignment.toml", "adapters.py")
 ENGINE = ("grading", "assignment", "worker")
 RULES_SECRET = b"seeds of hidden checks while rules are looked at"
 
@@ -195,6 +196,7 @@ class Judge:
                 for path in paths
                 if path.exists()
             ]
+            parts += [f"{path}:{text}" for path, text in check_files(self.folder).items()]
             parts += brought_sources(self.folder, read_manifest(self.folder)).values()
             self._known = "|".join(parts)
         return self._known

@@ -54,8 +54,8 @@ def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
     places = _places(root)
     name = match_folder(id_or_name, list(places))
     place = places[name]
-    if (place / "checks").is_dir():  # a wheel's
-        files, public = _read_tree(place / "kit"), _read_tree(place / "checks")
+    if (place / "kit").is_dir():  # a wheel's
+        files, public = _read_tree(place / "kit"), _read_tree(place / "public")
     else:
         files, public = kit_files(place), public_files(place)
     bundle = bundle_of(public, name)
@@ -130,7 +130,7 @@ def _places(root: Path | None) -> dict[str, Path]:
     installed = root or PACKAGE / "kits"
     if not installed.is_dir():
         return {}
-    return {path.name: path for path in sorted(installed.iterdir()) if (path / "checks").is_dir()}
+    return {path.name: path for path in sorted(installed.iterdir()) if (path / "kit").is_dir()}
 
 
 def _read_tree(top: Path) -> dict[str, bytes]:

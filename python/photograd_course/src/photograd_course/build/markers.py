@@ -4,8 +4,6 @@
     # <<< solution
     # >>> student              comment lines: the stub, where the default one will not do; directly
     # <<< student              below the solution it stands in for
-    # >>> hidden               in checks.py: what students do not get
-    # <<< hidden
 
 A marker is a comment with a line of its own. The same characters inside a string mean nothing.
 """
@@ -15,15 +13,14 @@ from __future__ import annotations
 import io
 import re
 import tokenize
-from collections.abc import Collection
 from dataclasses import dataclass
 
 from ..errors import SceneError, message
 
-KINDS = ("solution", "student", "hidden")
+KINDS = ("solution", "student")
 _LOOKS = re.compile(r"#\s*(>>>|<<<)")
-_OPEN = re.compile(r"# >>> (solution|student|hidden)(?: (\d\d\.\w+))?")
-_CLOSE = re.compile(r"# <<< (solution|student|hidden)")
+_OPEN = re.compile(r"# >>> (solution|student)(?: (\d\d\.\w+))?")
+_CLOSE = re.compile(r"# <<< (solution|student)")
 
 
 class RegionError(SceneError):
@@ -48,19 +45,15 @@ class Region:
     indent: int
 
 
-def find_regions(
-    text: str, file: str = "source", kinds: Collection[str] = KINDS
-) -> tuple[Region, ...]:
+def find_regions(text: str, file: str = "source") -> tuple[Region, ...]:
     """The regions of a text, in order.
 
     Args:
         text: Python source.
         file: its name, for messages.
-        kinds: those that may occur in this file.
 
     Raises:
-        RegionError: a marker is misnamed, nested, without partner or not allowed here, or the text
-            is no Python.
+        RegionError: a marker is misnamed, nested or without partner, or the text is no Python.
     """
     regions: list[Region] = []
     begun: Region | None = None
@@ -73,7 +66,7 @@ def find_regions(
         if opens:
             if begun is not None:
                 raise region_error(file, line, f"'# <<< {begun.kind}' first", comment)
-            begun = _begin(opens, file, line, column, kinds)
+            begun = _begin(opens, file, line, column)
         elif closes:
             if begun is None or closes[1] != begun.kind:
                 wanted = "no end here" if begun is None else f"'# <<< {begun.kind}'"
@@ -81,18 +74,14 @@ def find_regions(
             regions.append(Region(begun.kind, begun.task, begun.first, line, begun.indent))
             begun = None
         else:
-            raise region_error(file, line, f"a marker of {sorted(kinds)}", comment)
+            raise region_error(file, line, f"a marker of {sorted(KINDS)}", comment)
     if begun is not None:
         raise region_error(file, begun.first, f"'# <<< {begun.kind}' below", "the end of the file")
     return tuple(regions)
 
 
-def _begin(
-    match: re.Match[str], file: str, line: int, column: int, kinds: Collection[str]
-) -> Region:
+def _begin(match: re.Match[str], file: str, line: int, column: int) -> Region:
     kind, task = match[1], match[2] or ""
-    if kind not in kinds:
-        raise region_error(file, line, f"a marker of {sorted(kinds)}", match[0])
     if (kind == "solution") != bool(task):
         wanted = "'# >>> solution NN.k'" if kind == "solution" else f"'# >>> {kind}' alone"
         raise region_error(file, line, wanted, match[0])

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from ..assignment.brought import brought_sources
+from ..assignment.check_files import public_check_files
 from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.toml import read_toml
 from .notebook import notebook_of
-from .regions import strip_hidden, strip_solution
+from .regions import strip_solution
 from .toml_text import tables, toml_key
 
 SECRET_KEYS = ("answer", "because")  # of questions
@@ -62,7 +63,7 @@ def public_files(folder: Path) -> dict[str, bytes]:
         IoError, SceneError: the manifest, a question or a marker is wrong.
     """
     files = {"assignment.toml": _encode(_text(folder / "assignment.toml"))}
-    files["checks.py"] = _encode(strip_hidden(_text(folder / "checks.py")))
+    files |= {path: _encode(text) for path, text in public_check_files(folder).items()}
     if (folder / "questions.toml").exists():
         files["questions.toml"] = _encode(questions_without_keys(folder))
     for name in ("adapters.py", "hints.json"):
@@ -99,9 +100,9 @@ def readme(manifest: Manifest, handout: str) -> str:
 
 
 def wheel_kits(folder: Path) -> dict[str, bytes]:
-    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and checks/."""
+    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and public/."""
     kit = {f"kit/{path}": data for path, data in kit_files(folder).items()}
-    return {**kit, **{f"checks/{path}": data for path, data in public_files(folder).items()}}
+    return {**kit, **{f"public/{path}": data for path, data in public_files(folder).items()}}
 
 
 def questions_without_keys(folder: Path) -> str:

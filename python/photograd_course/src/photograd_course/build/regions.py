@@ -1,4 +1,4 @@
-"""What students get of an instructor's source: stubs for solutions, nothing for hidden parts."""
+"""What students get of an instructor's source: stubs for solutions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ __all__ = [
     "SolutionPart",
     "find_regions",
     "solution_parts",
-    "strip_hidden",
     "strip_solution",
 ]
 
@@ -39,7 +38,7 @@ def strip_solution(text: str, file: str = "source") -> str:
             stand directly below a solution.
     """
     lines = text.splitlines()
-    regions = find_regions(text, file, ("solution", "student"))
+    regions = find_regions(text, file)
     owners = _owners(text, file, regions)
     result: list[str] = []
     at = 0  # lines done so far
@@ -59,18 +58,6 @@ def strip_solution(text: str, file: str = "source") -> str:
     return _tidy([*result, *lines[at:]])
 
 
-def strip_hidden(text: str, file: str = "checks.py") -> str:
-    """The text without its hidden regions.
-
-    Raises:
-        RegionError: see `find_regions`.
-    """
-    lines = text.splitlines()
-    for region in reversed(find_regions(text, file, ("hidden",))):
-        del lines[region.first - 1 : region.last]
-    return _tidy(lines)
-
-
 def solution_parts(text: str, file: str = "source") -> tuple[SolutionPart, ...]:
     """The solutions of a source, in order.
 
@@ -78,7 +65,7 @@ def solution_parts(text: str, file: str = "source") -> tuple[SolutionPart, ...]:
         RegionError: see `find_regions`.
     """
     lines = text.splitlines()
-    regions = find_regions(text, file, ("solution", "student"))
+    regions = find_regions(text, file)
     owners = _owners(text, file, regions)
     return tuple(
         SolutionPart(

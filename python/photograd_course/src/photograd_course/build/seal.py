@@ -11,6 +11,7 @@ import hashlib
 import hmac
 import io
 import json
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,6 +19,7 @@ from typing import Any
 
 from ..assignment.brought import brought_sources
 from ..assignment.bundle import Bundle
+from ..assignment.check_files import check_files
 from ..assignment.manifest import read_manifest
 from ..errors import IoError, SceneError, message
 from .archive import zip_bytes
@@ -25,7 +27,9 @@ from .kits import bundle_of
 
 FORMAT = 1
 LARGEST = 64 << 20  # bytes of all files together
-FILES = ("assignment.toml", "checks.py", "questions.toml", "answers.py", "adapters.py")
+FILES = ("assignment.toml", "questions.toml", "answers.py", "adapters.py")
+# Of files in a bundle: the paths that `bundle_files` makes, and no way out of a folder.
+_PLAIN = re.compile(r"(?:checks/(?:hidden/)?)?\w+\.\w+", re.ASCII)
 
 
 class SealError(SceneError):
@@ -41,6 +45,7 @@ def bundle_files(folder: Path, hints: Mapping[str, str]) -> dict[str, bytes]:
     """
     names = [*FILES, f"{read_manifest(folder).module}.py"]
     files = {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
+    files |= {path: text.encode() for path, text in check_files(folder).items()}
     for name, text in brought_sources(folder, read_manifest(folder)).items():
         files[f"{name}.py"] = text.encode()
     return {**files, "hints.json": json.dumps(dict(hints), indent=1, sort_keys=True).encode()}
@@ -119,9 +124,8 @@ def _unzip(data: bytes, name: str) -> dict[str, bytes]:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = archive.infolist()
             names = [info.filename for info in infos]
-            plain = all(n and "/" not in n and "\\" not in n for n in names)
-            if len(set(names)) != len(names) or not plain:
-                raise _bad(name, "plain names, each once", f"{names[:20]}")
+            if len(set(names)) != len(names) or not all(map(_PLAIN.fullmatch, names)):
+                raise _bad(name, "names as they were sealed, each once", f"{names[:20]}")
             if sum(info.file_size for info in infos) > LARGEST:
                 raise _bad(name, f"at most {LARGEST >> 20} MB", "more")
             return {info.filename: archive.read(info) for info in infos}

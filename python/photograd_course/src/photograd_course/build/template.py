@@ -41,20 +41,21 @@ def twice(x: np.ndarray) -> np.ndarray:
     # <<< solution
 '''
 
-CHECKS = '''\
-"""Checks of assignment NN."""
+CHECKS = '"""Public checks of assignment NN, a file for each task."""\n'
+
+PUBLIC = '''\
+"""Task NN.1, public checks."""
 
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Subject, Tolerance, check
+from photograd_course.grading import Array, Tolerance, check
 
 ROUNDING = Tolerance(1e-12, "doubling is exact; the nearest wrong answer is off by half")
 
 
 @check(
     "NN.1.known",
-    task="NN.1",
     points=40,
     calls=("twice",),
     tolerance=ROUNDING,
@@ -65,12 +66,22 @@ def known_values_are_doubled(t):
     """1, 2 and 5 become 2, 4 and 10."""
     known = np.array([1.0, 2.0, 5.0])
     t.close("y", t.call("twice", known, returns=Array((3,))), [2.0, 4.0, 10.0], reveal=True)
+'''
+
+HIDDEN = '"""Hidden checks of assignment NN: no file of this folder is in a kit."""\n'
+
+HIDDEN_TASK = '''\
+"""Task NN.1, hidden checks."""
+
+from __future__ import annotations
+
+from photograd_course.grading import Array, Subject, check
+
+from ..task_1 import ROUNDING
 
 
-# >>> hidden
 @check(
     "NN.1.random",
-    task="NN.1",
     points=35,
     calls=("twice",),
     visibility="hidden",
@@ -90,9 +101,6 @@ def random_values_are_doubled(t):
     """Random values are doubled."""
     x = t.rng.uniform(-3.0, 3.0, 8)
     t.close("y", t.call("twice", x, returns=Array((8,))), t.reference.twice(x))
-
-
-# <<< hidden
 '''
 
 QUESTIONS = """\
@@ -166,7 +174,10 @@ def template(number: str, name: str) -> dict[str, str]:
     files = {
         "assignment.toml": MANIFEST,
         f"{name}.py": MODULE,
-        "checks.py": CHECKS,
+        "checks/__init__.py": CHECKS,
+        "checks/task_1.py": PUBLIC,
+        "checks/hidden/__init__.py": HIDDEN,
+        "checks/hidden/task_1.py": HIDDEN_TASK,
         "questions.toml": QUESTIONS,
         "handout.md": HANDOUT,
         "explore.py": EXPLORE,

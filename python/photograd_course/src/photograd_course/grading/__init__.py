@@ -1,12 +1,12 @@
 """The trusted side: what a check may say, how submissions are called, and what comes of it.
 
-An assignment's `checks.py` needs only what this module exports.
+An assignment's `checks/` needs only what this module exports.
 """
 
 from __future__ import annotations
 
 from .battery import Subject
-from .check import Check, check
+from .check import Check, check, checks_for
 from .cost import agree
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .outcome import Outcome, Status
@@ -34,4 +34,5 @@ __all__ = [
     "agree",
     "asks",
     "check",
+    "checks_for",
 ]

@@ -14,25 +14,26 @@ from typing import Any
 import numpy as np
 
 from .cost import require_cheap
-from .failures import CheckFailed
+from .failures import CheckFailed, GraderFault
+from .specs import Array as ArraySpec
 from .tolerance import Tolerance
 from .trial import Trial
 
 __all__ = [
+    "agrees_with_finite_differences",
     "central_differences",
+    "is_the_transpose",
+    "matrix_of",
     "random_cotangent",
     "require_cheap",
-    "require_gradients",
-    "require_transpose",
     "require_zero_for_zero",
 ]
 
 STEP = 1e-5
 DIFFERENCES = Tolerance(1e-6, "central differences at 1e-5 leave 1e-10 to 2e-8 of smooth code")
-ANALYTIC = Tolerance(1e-9, "two ways to write the same sum differ by some 1e-15")
-TRANSPOSE = Tolerance(1e-9, "both sides are sums of the same products")
 Forward = Callable[[Mapping[str, Any]], Any]
 Array = np.ndarray[Any, np.dtype[np.float64]]
+Operand = Array | tuple[Array, ...]
 
 
 def random_cotangent(rng: np.random.Generator, shape: tuple[int, ...]) -> Array:
@@ -57,7 +58,7 @@ def central_differences(
     return gradient
 
 
-def require_gradients(
+def agrees_with_finite_differences(
     trial: Trial,
     got: Mapping[str, Any],
     forward: Forward,
@@ -77,27 +78,49 @@ def require_gradients(
         trial.close(f"d_{group}", gradient, expected, tolerance)
 
 
-def require_transpose(
-    trial: Trial,
-    forward: Callable[[Array], Array],
-    backward: Callable[[Array], Array],
-    shapes: tuple[tuple[int, ...], tuple[int, ...]],
-    tolerance: Tolerance = TRANSPOSE,
+def is_the_transpose(
+    trial: Trial, what: str, x: Operand, forward: Operand, cotangent: Operand, backward: Operand
 ) -> None:
-    """<S x, g> = <x, S^T g> for a linear ``forward``, three times.
+    """The dot-product test of a linear map S: <S x, g> = <x, S* g>, within the check's tolerance.
 
     Args:
         trial: of the check.
-        forward, backward: the linear map and what should be its transpose.
-        shapes: of x and of g.
-        tolerance: of the relative difference of both sides.
+        what: names the right-hand side, such as "<x, S* g>".
+        x: input of the map, an array or several.
+        forward: S x.
+        cotangent: g, of the shapes of ``forward``.
+        backward: S* g, of the shapes of ``x``.
+
+    Raises:
+        CheckFailed: the difference is not small against |S x| |g|.
+        GraderFault: the check has no tolerance.
     """
-    for _ in range(3):
-        x, g = (trial.rng.uniform(-1.0, 1.0, shape) for shape in shapes)
-        left, right = float(np.vdot(forward(x), g)), float(np.vdot(x, backward(g)))
-        scale = max(abs(left), abs(right))
-        trial.require(scale > 0, "both sides of the dot-product test are zero")
-        trial.close("<S x, g> against <x, S^T g>", right, left, tolerance)
+    bound = trial.check.tolerance
+    if bound is None:
+        raise GraderFault(f"{trial.check.id}: compares without a tolerance")
+    left, right = _flat(forward), _flat(cotangent)
+    size = float(np.linalg.norm(left) * np.linalg.norm(right))
+    trial.close(
+        what,
+        np.vdot(_flat(x), _flat(backward)),
+        np.vdot(left, right),
+        Tolerance(bound.relative, bound.evidence, floor=size),
+    )
+
+
+def matrix_of(trial: Trial, function: str, shape: tuple[int, ...], places: Array) -> Array:
+    """The matrix (N, cells) of a linear function of a grid that is sampled at N places.
+
+    Args:
+        trial: of the check.
+        function: of the submission: of values (*shape, C) and places (N, ...), it gives (N, C).
+        shape: of the grid.
+        places: what the function takes besides the values.
+    """
+    cells = int(np.prod(shape))
+    unit = np.eye(cells).reshape(*shape, cells)
+    matrix: Array = trial.call(function, unit, places, returns=ArraySpec((len(places), cells)))
+    return matrix
 
 
 def require_zero_for_zero(trial: Trial, gradients: Mapping[str, Any]) -> None:
@@ -107,3 +130,8 @@ def require_zero_for_zero(trial: Trial, gradients: Mapping[str, Any]) -> None:
             not np.asarray(gradient).any(),
             f"d_{group}: not zero although the incoming derivative is zero",
         )
+
+
+def _flat(operand: Operand) -> Array:
+    parts = operand if isinstance(operand, tuple) else (operand,)
+    return np.concatenate([np.ravel(part) for part in parts])

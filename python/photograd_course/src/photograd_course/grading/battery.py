@@ -67,11 +67,11 @@ def run_battery(trial: Trial, subject: Subject) -> None:
         GraderFault: the subject's arguments prove nothing.
     """
     require_sizes(trial, subject)
-    require_layouts(trial, subject)
+    left_unchanged(trial, subject)
     require_repeatable(trial, subject)
     if subject.rows:
-        require_rows_apart(trial, subject)
-    require_special(trial, subject)
+        rows_independent(trial, subject)
+    bad_values(trial, subject)
 
 
 def require_sizes(trial: Trial, subject: Subject) -> None:
@@ -87,7 +87,7 @@ def require_sizes(trial: Trial, subject: Subject) -> None:
             _require_equal(trial, subject, got, subject.answer(trial, args), what)
 
 
-def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
+def left_unchanged(trial: Trial, subject: Subject, n: int = 5) -> None:
     """Arguments stay as they are; read-only, with gaps or run backwards they give equal values.
 
     The worker looks at the arguments: the submission's word is not asked.
@@ -109,7 +109,7 @@ def require_repeatable(trial: Trial, subject: Subject, n: int = 5) -> None:
     _require_equal(trial, subject, again, first, f"{subject.function}, called again")
 
 
-def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
+def rows_independent(trial: Trial, subject: Subject, n: int = 6) -> None:
     """Each row of the answer depends on the same row of the arguments alone.
 
     Every argument in ``subject.rows`` gets values of its own in every row, so that a function which
@@ -129,7 +129,7 @@ def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
         _require_equal(trial, subject, parts, [part[[row]] for part in whole], what)
 
 
-def require_special(trial: Trial, subject: Subject, n: int = 4) -> None:
+def bad_values(trial: Trial, subject: Subject, n: int = 4) -> None:
     """What the text says of NaN, infinity and the like in the first element of an argument."""
     for position, values in subject.special.items():
         for value in values:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 from ..errors import RangeError, message
 from .battery import Subject
@@ -20,8 +22,7 @@ class Check:
     """One declarative check; its body asks the submission and compares.
 
     Attributes:
-        id: unique in the assignment, such as "01.2.rate".
-        task: the task of the manifest that it belongs to, such as "01.2".
+        id: unique in the assignment, such as "01.2.rate": its task, and a name.
         points: what it is worth.
         visibility: "public" (students have it), "hidden" (shown after the submission is due) or
             "secret" (only its title is ever shown).
@@ -41,7 +42,6 @@ class Check:
     """
 
     id: str
-    task: str
     points: float
     body: Body
     calls: tuple[str, ...]
@@ -53,6 +53,11 @@ class Check:
     sole: str = ""
     adjoints: tuple[str, ...] = ()
     battery: tuple[Subject, ...] = ()
+
+    @property
+    def task(self) -> str:
+        """The task of the manifest that it belongs to, such as "01.2"."""
+        return self.id.rpartition(".")[0]
 
     @property
     def title(self) -> str:
@@ -68,7 +73,6 @@ class Check:
 def check(
     id: str,
     *,
-    task: str,
     points: float,
     calls: Iterable[str],
     visibility: str = "public",
@@ -80,7 +84,7 @@ def check(
     adjoints: Iterable[str] | None = None,
     battery: Iterable[Subject] = (),
 ) -> Callable[[Body], Check]:
-    """Make a check of the function below.
+    """Make a check of the function below; the arguments are attributes of `Check`.
 
     Raises:
         RangeError: a field is out of range.
@@ -99,7 +103,6 @@ def check(
             raise RangeError(message("check", id, "a docstring: the title students read", "none"))
         return Check(
             id=id,
-            task=task,
             points=points,
             body=body,
             calls=called,
@@ -114,6 +117,15 @@ def check(
         )
 
     return make
+
+
+def checks_for(**shared: Any) -> Callable[..., Callable[[Body], Check]]:
+    """`check` for a file whose checks have some arguments in common; each can have another.
+
+    Args:
+        shared: arguments of `check`, such as ``calls``, ``needs`` and ``tolerance``.
+    """
+    return partial(check, **shared)
 
 
 def _adjoints(calls: tuple[str, ...], body: Body) -> tuple[str, ...]:

@@ -22,21 +22,27 @@ class Spec(Protocol):
 
 @dataclass(frozen=True)
 class Array:
-    """An array of exactly this shape and dtype ("f8", "f4", "i8", "i4", "u1" or "bool").
+    """An array of this shape and dtype ("f8", "f4", "i8", "i4", "u1" or "bool").
 
-    Finite, unless ``finite`` is False: then the check looks at NaN and infinities itself.
+    Attributes:
+        shape: None stands for any length of an axis.
+        dtype: exactly this one.
+        finite: False where the check looks at NaN and infinities itself.
+        above: every value is greater; NaN is not.
     """
 
-    shape: tuple[int, ...]
+    shape: tuple[int | None, ...]
     dtype: str = "f8"
     finite: bool = True
+    above: float | None = None
 
     def require(self, value: Any, where: str) -> None:
         """See Spec."""
-        want = f"an array of shape {self.shape} and dtype {np.dtype(_FULL[self.dtype])}"
+        shape = str(self.shape).replace("None", "any")
+        want = f"an array of shape {shape} and dtype {np.dtype(_FULL[self.dtype])}"
         if not isinstance(value, np.ndarray):
             raise _wrong_kind(where, want, value)
-        if value.shape != self.shape:
+        if not self._fits(value.shape):
             raise CheckFailed(f"{where}: expected {want}, got shape {value.shape}")
         if value.dtype != np.dtype(_FULL[self.dtype]):
             raise CheckFailed(f"{where}: expected {want}, got dtype {value.dtype}")
@@ -47,16 +53,26 @@ class Array:
                 f"{where}: {count} of {value.size} values are not finite, the first at {index}",
                 {"worst_index": index},
             )
+        if self.above is not None and not (value > self.above).all():
+            index = tuple(int(i) for i in np.argwhere(~(value > self.above))[0])
+            want = f"values above {self.above:g}{_or_infinity(self.finite)}"
+            got = f"{value[index]} at index {index}"
+            raise CheckFailed(f"{where}: expected {want}, got {got}", {"worst_index": index})
+
+    def _fits(self, shape: tuple[int, ...]) -> bool:
+        pairs = zip(self.shape, shape, strict=False)
+        return len(shape) == len(self.shape) and all(want in (None, n) for want, n in pairs)
 
 
 @dataclass(frozen=True)
 class Number:
     """A float, or an integer of at most 64 bits; an array without axes will do.
 
-    Finite, unless ``finite`` is False.
+    Finite, unless ``finite`` is False; greater than ``above`` where that is given.
     """
 
     finite: bool = True
+    above: float | None = None
 
     def require(self, value: Any, where: str) -> None:
         """See Spec."""
@@ -68,6 +84,9 @@ class Number:
             raise CheckFailed(f"{where}: expected a finite float, got an integer beyond 64 bits")
         if self.finite and not math.isfinite(value):
             raise CheckFailed(f"{where}: expected a finite float, got {value}")
+        if self.above is not None and not value > self.above:
+            more = _or_infinity(self.finite)
+            raise CheckFailed(f"{where}: expected a float above {self.above:g}{more}, got {value}")
 
 
 @dataclass(frozen=True)
@@ -177,6 +196,10 @@ _FULL = {
     "u1": "uint8",
     "bool": "bool",
 }
+
+
+def _or_infinity(finite: bool) -> str:
+    return "" if finite else ", or infinity"
 
 
 def _wrong_kind(where: str, want: str, value: Any) -> CheckFailed:

@@ -1,0 +1,27 @@
+"""What the checks of several tasks share."""
+
+import numpy as np
+from photograd_course.grading import Array, Items, Tolerance, Truth, asks
+
+# Right answers: solution and alternatives with six secrets; wrong ones: all mutants with two.
+EXACT = Tolerance(1e-12, "right answers differ by at most 3e-15, wrong ones by 4e-9 or more")
+
+
+def walk(n, *axes):
+    """What a walk of n steps returns: points, values, verdict."""
+    names = ("the points", "the values", "the verdict")
+    return Items(Array((n + 1, *axes)), Array((n + 1,)), Truth(), names=names)
+
+
+def on_points(count, f, grad):
+    """f and its gradient, which take nothing but arrays of shape (count,)."""
+    spec = Array((count,), finite=False)
+    return asks(f, spec, name="f"), asks(grad, spec, name="grad")
+
+
+def rotated_bowl(rng, curvatures):
+    """f, its gradient and the eigenvectors (columns) for given eigenvalues of the Hessian."""
+    vectors, _ = np.linalg.qr(rng.normal(size=(len(curvatures), len(curvatures))))
+    hessian = vectors @ np.diag(curvatures) @ vectors.T
+    f, grad = lambda x: float(0.5 * x @ hessian @ x), lambda x: hessian @ x
+    return *on_points(len(hessian), f, grad), vectors

@@ -1,0 +1,13 @@
+"""What the hidden checks of several tasks share."""
+
+from ..common import on_points
+
+
+def bowls(t, n):
+    """A bowl, its gradient and a start; of n variables, or of one."""
+    a = t.rng.uniform(0.5, 2.0, max(n, 1))
+    f, grad = lambda x: float(0.5 * x @ (a * x)), lambda x: a * x
+    return *on_points(len(a), f, grad), t.rng.uniform(1.0, 2.0, len(a))
+
+
+FAR = (0, 1, 2, 200)  # steps: none, and more than any example takes

@@ -1,0 +1,38 @@
+"""Task 02.1, hidden checks."""
+
+import numpy as np
+from photograd_course.grading import Subject, check
+
+from ..common import EXACT, gates_spec
+
+
+def multiplied(t, n):
+    """What the adapter `gates` takes, for n products."""
+    return "mul", *t.rng.normal(0.0, 3.0, (2, n))
+
+
+@check(
+    "02.1.many",
+    points=3,
+    calls=("Value.__add__", "Value.__mul__"),
+    visibility="hidden",
+    tolerance=EXACT,
+    sole="the same mistakes, to rounding, at places not known beforehand",
+    battery=[
+        Subject(
+            "adapters.gates",
+            multiplied,
+            gates_spec,
+            right=lambda *args: {"values": args[2] * args[3], "slopes": np.stack(args[3:1:-1], 1)},
+            sizes=(1, 7),
+        )
+    ],
+)
+def sums_and_products_at_random(t):
+    """Values and slopes of sums and products are right at 100 random places."""
+    a, b = t.rng.normal(0.0, 3.0, (2, 100))
+    ones = np.ones(100)
+    for op, right, slopes in (("add", a + b, [ones, ones]), ("mul", a * b, [b, a])):
+        found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
+        t.close(f"values of {op}", found["values"], right)
+        t.close(f"slopes of {op}", found["slopes"], np.stack(slopes, 1))

@@ -1,0 +1,28 @@
+"""Task 02.3, hidden checks."""
+
+import numpy as np
+from photograd_course.grading import check
+
+from ..common import EXACT, gates_spec
+
+
+@check(
+    "02.3.many",
+    points=3,
+    calls=("Value.exp", "Value.log", "Value.__pow__"),
+    visibility="hidden",
+    tolerance=EXACT,
+    sole="the same mistakes, to rounding, at places not known beforehand",
+)
+def gates_of_one_input_at_random(t):
+    """exp, log and powers are right at 100 random places."""
+    a, n = t.rng.uniform(0.05, 4.0, 100), t.rng.uniform(-2.5, 2.5, 100)
+    cases = (
+        ("exp", None, np.exp(a), np.exp(a)),
+        ("log", None, np.log(a), 1 / a),
+        ("pow", n, a**n, n * a ** (n - 1)),
+    )
+    for op, b, values, slopes in cases:
+        found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
+        t.close(f"values of {op}", found["values"], values)
+        t.close(f"slopes of {op}", found["slopes"][:, 0], slopes)

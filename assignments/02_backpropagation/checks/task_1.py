@@ -1,0 +1,39 @@
+"""Task 02.1, public checks."""
+
+from photograd_course.grading import checks_for
+
+from .common import EXACT, SLOPES, away, gates_spec, require_slopes
+
+check = checks_for(calls=("Value.__add__", "Value.__mul__"))
+
+
+@check("02.1.values", points=2, tolerance=EXACT, sole="tells a wrong value from a wrong slope")
+def sums_and_products_have_their_value(t):
+    """Sums and products have the right value, with a plain number on either side too."""
+    a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 0.5, 3.0, 6)
+    for op, right in (("add", a + b), ("radd", a + b), ("mul", a * b), ("rmul", a * b)):
+        found = t.call("adapters.gates", op, a, b, returns=gates_spec(6))
+        t.close(f"values of {op}", found["values"], right, reveal=True)
+
+
+@check("02.1.slopes", points=4, sole="names the gate; whole graphs fail too")
+def slopes_of_sums_and_products(t):
+    """A sum and a product note the slope towards each input (against differences)."""
+    a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 4.0, 6.0, 6)
+    for op in ("add", "mul"):
+        require_slopes(t, op, a, b)
+
+
+@check(
+    "02.1.square",
+    points=3,
+    tolerance=EXACT,
+    sole="the same value on both sides; the worked graph fails too, for its x * x",
+)
+def the_same_value_twice(t):
+    """x + x has the slope 2 towards x, and x * x has the slope 2 x."""
+    x = float(t.rng.uniform(1.5, 3.0))
+    found = t.call("adapters.gate", "add", x, None, True, returns=SLOPES)
+    t.close("slope of x + x", found["slopes"].sum(), 2.0, reveal=True)
+    found = t.call("adapters.gate", "mul", x, None, True, returns=SLOPES)
+    t.close("slope of x * x", found["slopes"].sum(), 2 * x, reveal=True)

@@ -1,0 +1,28 @@
+"""Task 02.2, public checks."""
+
+import numpy as np
+from photograd_course.grading import checks_for
+
+from .common import EXACT, SLOPES, away, gates_spec, require_slopes
+
+check = checks_for(calls=("Value.maximum",), tolerance=EXACT)
+
+
+@check("02.2.routes", points=4, sole="names the gate; whole graphs fail too")
+def the_larger_input_takes_all(t):
+    """maximum has the larger value, and only the larger input gets a slope."""
+    a = away(t.rng, 0.5, 3.0, 8)
+    b = a + away(t.rng, 0.5, 1.0, 8)
+    found = t.call("adapters.gates", "max", a, b, returns=gates_spec(8))
+    t.close("values of maximum", found["values"], np.maximum(a, b), reveal=True)
+    require_slopes(t, "max", a, b)
+
+
+@check("02.2.tie", points=3)
+def a_tie_is_settled(t):
+    """At a tie the second input takes all; no differences here, they would give 1/2 and 1/2."""
+    x = float(t.rng.uniform(1.5, 3.0))
+    found = t.call("adapters.gate", "max", x, x, returns=SLOPES)
+    t.close("slopes at a tie", found["slopes"], [0.0, 1.0], reveal=True)
+    found = t.call("adapters.gate", "max", x, None, True, returns=SLOPES)
+    t.close("slope of maximum(x, x)", found["slopes"].sum(), 1.0, reveal=True)

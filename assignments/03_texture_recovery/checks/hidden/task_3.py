@@ -1,0 +1,28 @@
+"""Task 03.3, hidden checks."""
+
+from photograd_course.grading import Array, Items, Number, Subject, check
+
+from ..common import EXACT
+from .common import measured
+
+
+@check(
+    "03.3.hidden",
+    points=4,
+    calls=("loss_and_grad",),
+    visibility="hidden",
+    needs=("bilinear_sample", "bilinear_sample_adjoint"),
+    tolerance=EXACT,
+    sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("loss_and_grad", measured, lambda _: Items(Number(), Array((3, 5, 2))))],
+)
+def loss_and_gradient_of_random_textures(t):
+    """Loss and gradient are right, cheap or not, on random textures and measurements."""
+    for shape, n in (((4, 6, 3), 50), ((5, 2, 1), 7)):
+        T, uv = t.rng.uniform(0.0, 1.0, shape), t.rng.uniform(0.0, 1.0, (n, 2))
+        target = t.rng.uniform(0.0, 1.0, (n, shape[2]))
+        result = Items(Number(), Array(shape), names=("L", "d_T"))
+        loss, d_T = t.call("loss_and_grad", T, uv, target, returns=result)
+        right = t.reference.loss_and_grad(T, uv, target)
+        t.close("L", loss, right[0])
+        t.close("d_T", d_T, right[1])

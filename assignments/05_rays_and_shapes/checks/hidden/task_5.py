@@ -1,0 +1,64 @@
+"""Task 05.5, hidden checks."""
+
+import numpy as np
+from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading.generators import unit_vectors
+
+from ..common import EXACT, WHOLE, Scene, built
+from ..task_5 import held
+
+
+def stacked(t, n):
+    """What `build_bvh` takes."""
+    low = t.rng.uniform(-5, 5, (n, 3))
+    return low, low + t.rng.uniform(0.2, 1.0, (n, 3))
+
+
+@check(
+    "05.5.hidden",
+    points=2,
+    calls=("build_bvh",),
+    visibility="hidden",
+    tolerance=EXACT,
+    sole="the same mistakes at things that are not known beforehand; growth",
+    battery=[
+        Subject(
+            "build_bvh",
+            stacked,
+            lambda _: Items(Array((None, 2, 3)), WHOLE, WHOLE, WHOLE),
+            has_right=False,
+        )
+    ],
+)
+def trees_at_random(t):
+    """Random things: the boxes fit, and rays ask for few more of them when there are many more."""
+    means = []
+    for count in (64, 1024):
+        middle = t.rng.uniform(-5, 5, (count, 3)) * [1.0, 2.0, 1.0]
+        half = 2.0 * count ** (-1 / 2) * t.rng.uniform(0.2, 1, (count, 3))
+        low, high = middle - half, middle + half
+        tree = built(t, low, high)
+        things = held(tree)
+        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in things])
+        t.close(f"boxes of {count} things", tree[0], right)
+        asked = 0
+        for _ in range(24):
+            scene = Scene(low, high)
+            scene.boxes = tree[0]
+            scene.ray(t.rng.uniform(-8, 8, 3), unit_vectors(t.rng, 1)[0])
+            t.reference.traverse(
+                tree[1],
+                tree[2],
+                tree[3],
+                lambda k, s=scene: s.box(int(k)),
+                scene.meet,
+                scene.origin,
+                scene.direction,
+            )
+            asked += len(scene.asked)
+        means.append(asked / 24)
+    t.require(
+        means[1] < 4 * means[0],
+        f"64 things: {means[0]:.1f} boxes for a ray, 1024 things: {means[1]:.1f}; "
+        "fewer than four times as many are enough",
+    )

@@ -1,0 +1,33 @@
+"""Task 07.1, hidden checks."""
+
+import numpy as np
+from photograd_course.grading import Array, Subject, check
+
+from ..common import EXACT, ways
+from ..task_1 import density
+from .common import mixed_room
+
+
+def pointed(t, n):
+    """What `light_pdf` takes, for what n rays of a room meet."""
+    scene, directions = mixed_room(t), ways(t.rng, n, -1)
+    hit = t.reference.see(scene, np.tile([0.1, 0.2, 0.3], (n, 1)), directions)
+    return scene, hit["thing"], directions, hit["t"]
+
+
+@check(
+    "07.1.hidden",
+    points=2,
+    calls=("light_pdf",),
+    visibility="hidden",
+    tolerance=EXACT,
+    sole="rooms that are not known beforehand",
+    battery=[Subject("light_pdf", pointed, lambda n: Array((n,)), rows=(1, 2, 3))],
+)
+def densities_in_a_room(t):
+    """What random rays of a room meet, against the solution."""
+    scene = mixed_room(t)
+    directions = ways(t.rng, 200, -1)
+    there = t.reference.see(scene, np.tile([0.1, 0.2, 0.3], (200, 1)), directions)
+    right = t.reference.light_pdf(scene, there["thing"], directions, there["t"])
+    t.close("density", density(t, scene, there["thing"], directions, there["t"]), right)

@@ -1,0 +1,114 @@
+"""Task 07.1, public checks."""
+
+import math
+
+import numpy as np
+from photograd_course.grading import Array, Tolerance, checks_for
+
+from .common import EXACT, UP, corners_of, flake, nodes, scene_of, ways
+
+check = checks_for(calls=("light_pdf",))
+
+NODES = Tolerance(1e-7, "16 nodes an axis leave 1e-9, wrong ones are off by 0.1 or more")
+
+
+def panel(rng, point, low=0.8, high=1.6):
+    """(corner, edge_u, edge_v) of a rectangle at random above a point, its front towards it."""
+    center = point + rng.uniform(low, high) * ways(rng, 1, 0.5)[0]
+    towards = (point - center) / np.linalg.norm(point - center)
+    normal = towards + 0.5 * ways(rng, 1, 0.0)[0]
+    u = np.cross(normal, rng.normal(size=3))
+    v = np.cross(normal, u)
+    u, v = (rng.uniform(0.4, 0.8) * e / np.linalg.norm(e) for e in (u, v))
+    if np.cross(u, v) @ towards < 0:
+        u, v = v, u
+    return center - (u + v) / 2, u, v
+
+
+def solid_angle(corners):
+    """Of a rectangle seen from the origin: two triangles, by Van Oosterom and Strackee."""
+    total = 0.0
+    for k in (1, 2):
+        a, b, c = corners[0], corners[k], corners[k + 1]
+        x, y, z = (np.linalg.norm(each) for each in (a, b, c))
+        below = x * y * z + a @ b * z + b @ c * x + c @ a * y
+        total += 2 * math.atan2(abs(np.linalg.det(np.stack([a, b, c]))), below)
+    return total
+
+
+def density(t, scene, thing, wi, distance):
+    return t.call("light_pdf", scene, thing, wi, distance, returns=Array((len(thing),)))
+
+
+def towards(scene, thing, point, uv):
+    """(wi, distance) from a point to places (n, 2) of a rectangle."""
+    place = (
+        scene["corners"][thing]
+        + uv[:, :1] * scene["edges_u"][thing]
+        + (uv[:, 1:] * scene["edges_v"][thing])
+    )
+    far = np.linalg.norm(place - point, axis=1)
+    return (place - point) / far[:, None], far
+
+
+@check(
+    "07.1.straight",
+    points=2,
+    tolerance=EXACT,
+    hint="equation (6): straight ahead the cosine is 1, and what is left is "
+    "distance squared over area, for one of K lamps",
+    sole="one number that can be worked out by head",
+)
+def straight_below(t):
+    """Straight below the middle of a lamp: distance squared over its area, a K-th of it for K."""
+    for count in (1, 3):
+        a, b, h = t.rng.uniform(0.2, 1.0, 3)
+        lamp = ((-a, h, -b), (2 * a, 0, 0), (0, 0, 2 * b), {"emission": 2.0})
+        others = [((9, k, 0), (0, 1.5, 0), (0, 0, 1), {"emission": 1.0}) for k in range(count - 1)]
+        scene = scene_of([*others, lamp, flake()])
+        got = density(t, scene, np.array([count - 1]), UP[None], np.array([h]))
+        t.close("density", got, [h * h / (4 * a * b * count)], reveal=True)
+
+
+@check(
+    "07.1.solid_angle",
+    points=4,
+    tolerance=NODES,
+    hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
+    "away four times smaller",
+    sole="a density by solid angle is known by the solid angle",
+)
+def densities_know_the_solid_angle(t):
+    """The mean of 1 / density over the places of a lamp is its solid angle, K times that for K."""
+    uv, weights = nodes(16)
+    for count in (1, 2, 3):
+        point = t.rng.uniform(-1, 1, 3)
+        flat = [(*panel(t.rng, point), {"emission": t.rng.uniform(0, 2, 3)}) for _ in range(count)]
+        scene = scene_of([flake(), *flat])
+        for k in range(count):
+            wi, far = towards(scene, k + 1, point, uv)
+            pdf = density(t, scene, np.full(len(uv), k + 1), wi, far)
+            t.require(bool((pdf > 0).all()), "the front of a lamp is seen, and the density is 0")
+            right = solid_angle(corners_of(*flat[k][:3]) - point)
+            t.close("mean of 1 / density", weights @ (1 / (count * pdf)), right, reveal=True)
+
+
+@check(
+    "07.1.none",
+    points=2,
+    hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
+    sole="what is never drawn has density 0",
+)
+def no_density_without_a_lamp(t):
+    """Walls, balls, nothing at all, and a lamp from behind or from the edge: exactly 0."""
+    turn = t.rng.uniform(0.5, 2.0)
+    flat = [flake(), ((0, 1, 0), (1, 0, 0), (0, 0, turn), {"emission": [0, 0, 1]}), flake()]
+    scene = scene_of(flat, [((0, 3, 0), 1, {})])
+    thing = np.array([1, 0, -1, 3, 1, 1, 2])
+    wi = np.array([UP, [0, 0, -1], UP, UP, -UP, [1.0, 0, 0], [0, 0.6, -0.8]])
+    far = np.array([1.0, 1, np.inf, 2, 1, 3, 1])
+    got = density(t, scene, thing, wi, far)
+    t.require(bool(got[0] > 0), "the front of a lamp has a density above 0")
+    told = ("", "a wall", "nothing", "a ball", "the back of a lamp", "a lamp's edge", "a wall")
+    for k in range(1, len(thing)):
+        t.require(bool(got[k] == 0), f"{told[k]} must have density 0, exactly")

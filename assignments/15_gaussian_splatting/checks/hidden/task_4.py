@@ -1,0 +1,47 @@
+"""Task 15.4, hidden checks."""
+
+import numpy as np
+from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading.adjoint_gate import random_cotangent
+
+from ..common import EXACT
+from ..task_4 import blended, blended_back, layers
+from .common import derivatives, values
+
+
+@check(
+    "15.4.hidden",
+    points=3,
+    calls=("composite",),
+    adjoints=("composite",),
+    visibility="hidden",
+    tolerance=EXACT,
+    sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.composite",
+            lambda t, n: layers(t.rng, n, 3),
+            lambda _: Array((3, 3)),
+            right=values("composite"),
+            sizes=(1, 2, 40),
+        ),
+        Subject(
+            "adapters.composite_back",
+            lambda t, n: (*layers(t.rng, n, 3), t.rng.normal(size=(3, 3))),
+            lambda n: Items(Array((n, 3)), Array((n, 3)), Array((3,))),
+            right=derivatives("composite"),
+            sizes=(1, 2, 40),
+        ),
+    ],
+)
+def random_layers(t):
+    """Values and derivatives are right for many layers."""
+    a, c, z, b = layers(t.rng, 20, 9)
+    z = np.floor(z)  # seven depths
+    g = random_cotangent(t.rng, (9, 3))
+    right, pullback = t.reference.composite(a, c, z, b)
+    t.close("shown", blended(t, a, c, z, b), right)
+    got = blended_back(t, a, c, z, b, g)
+    names = ("d_alpha", "d_colors", "d_background")
+    for name, mine, theirs in zip(names, got, pullback(g), strict=True):
+        t.close(name, mine, theirs)

@@ -1,0 +1,164 @@
+"""All that the rules look at, of one assignment: its texts, and what became of each variant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from ..assignment.checks import load_checks
+from ..assignment.manifest import Manifest, read_manifest
+from ..assignment.questions import Question, read_questions
+from ..grading.check import Check
+from .automatic import AutoMutant, automatic_mutants
+from .equivalents import Equivalent, read_equivalents
+from .judging import RULES_SECRET, Job, Judge, Verdict
+from .named import NamedMutant, read_alternatives, read_mutants
+from .public import wheel_kits
+from .regions import SolutionPart, solution_parts, strip_solution
+
+Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
+
+LEAST_SECONDS = 8.0  # of processor time for one text, however short the solution takes
+PATIENCE = 10.0  # times the solution's own seconds
+
+
+@contextmanager
+def no_bar(title: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Shows nothing."""
+    del title, total
+    yield _ignore
+
+
+def _ignore(done: int) -> None:
+    del done
+
+
+@dataclass
+class AssignmentBuild:
+    """One assignment, with everything worked out when first asked for, and kept.
+
+    Attributes:
+        folder: its source.
+        secret: seeds of the hidden checks.
+        cache: where verdicts are kept, or None.
+        bar: shows how far a long computation has come.
+        haystacks: name to text of what students can see besides this kit: the wheels.
+        siblings: ids of the assignments beside it.
+    """
+
+    folder: Path
+    secret: bytes = RULES_SECRET
+    cache: Path | None = None
+    bar: Bar = no_bar
+    haystacks: Mapping[str, str] = field(default_factory=dict)
+    siblings: frozenset[str] = frozenset()
+
+    @cached_property
+    def manifest(self) -> Manifest:
+        """The parsed `assignment.toml`."""
+        return read_manifest(self.folder)
+
+    @property
+    def module_file(self) -> str:
+        """Name of the graded module's file."""
+        return f"{self.manifest.module}.py"
+
+    @cached_property
+    def source(self) -> str:
+        """The instructor source."""
+        return (self.folder / self.module_file).read_text(encoding="utf-8")
+
+    @cached_property
+    def starter(self) -> str:
+        """What students get of it."""
+        return strip_solution(self.source, self.module_file)
+
+    @cached_property
+    def parts(self) -> tuple[SolutionPart, ...]:
+        """The solution regions."""
+        return solution_parts(self.source, self.module_file)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """All checks, hidden ones too."""
+        return tuple(load_checks(self.manifest))
+
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
+        """All questions, with keys."""
+        return read_questions(self.folder)
+
+    @cached_property
+    def mutants(self) -> tuple[NamedMutant, ...]:
+        """The named mutants."""
+        return read_mutants(self.folder)
+
+    @cached_property
+    def alternatives(self) -> dict[str, str]:
+        """Name to text of other right solutions."""
+        return read_alternatives(self.folder)
+
+    @cached_property
+    def automatic(self) -> list[AutoMutant]:
+        """The automatic mutants."""
+        return automatic_mutants(self.source, self.module_file)
+
+    @cached_property
+    def equivalents(self) -> tuple[Equivalent, ...]:
+        """Automatic mutants that are known to be no mistakes."""
+        return read_equivalents(self.folder)
+
+    @cached_property
+    def visible(self) -> dict[str, bytes]:
+        """What students get of this assignment, by path."""
+        return wheel_kits(self.folder)
+
+    @cached_property
+    def judge(self) -> Judge:
+        """Runs texts, as long as `PATIENCE` allows."""
+        first = Judge(self.folder, self.secret, self.cache, seconds=600.0)
+        solution = first.judge(Job(self.source))
+        spent = sum(float(each["seconds"]) for each in solution.outcomes)
+        seconds = max(LEAST_SECONDS, PATIENCE * spent)
+        return Judge(self.folder, self.secret, self.cache, seconds, first.ran)
+
+    @cached_property
+    def solution_verdict(self) -> Verdict:
+        """What becomes of the solution."""
+        return self.judge.judge(Job(self.source))
+
+    @cached_property
+    def starter_verdict(self) -> Verdict:
+        """What becomes of the starter."""
+        return self.judge.judge(Job(self.starter))
+
+    @cached_property
+    def mutant_verdicts(self) -> dict[str, Verdict]:
+        """What becomes of each named mutant that can be applied."""
+        texts = {m.name: m.apply(self.source) for m in self.mutants}
+        return self._judge_all("mutants", texts)
+
+    @cached_property
+    def alternative_verdicts(self) -> dict[str, Verdict]:
+        """What becomes of each alternative."""
+        return self._judge_all("alternatives", self.alternatives)
+
+    @cached_property
+    def automatic_verdicts(self) -> list[Verdict]:
+        """What becomes of each automatic mutant, up to the first check that notices it."""
+        jobs = [Job(each.text, first=True) for each in self.automatic]
+        return self.judge_jobs("automatic mutants", jobs)
+
+    def judge_jobs(self, title: str, jobs: Sequence[Job]) -> list[Verdict]:
+        """Verdicts on jobs, with a bar."""
+        if not jobs:
+            return []
+        with self.bar(f"{self.manifest.id} {title}", len(jobs)) as done:
+            return self.judge.judge_all(jobs, done)
+
+    def _judge_all(self, title: str, texts: Mapping[str, str]) -> dict[str, Verdict]:
+        verdicts = self.judge_jobs(title, [Job(text) for text in texts.values()])
+        return dict(zip(texts, verdicts, strict=True))
