@@ -34,8 +34,8 @@ PerceptronShape shape_of(int inputs, const std::vector<int>& widths, int hidden,
     return {inputs, widths, static_cast<Activation>(hidden), static_cast<Activation>(output), skip};
 }
 
-void layers_forward(const PerceptronShape& shape, const py::array& parameters, const py::array& inputs,
-             py::array outputs, bool fused) {
+void layers_forward(const PerceptronShape& shape, const py::array& parameters,
+                    const py::array& inputs, py::array outputs, bool fused) {
     dispatch_real("perceptron_forward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         const R* p = network_parameters<R>(args, "parameters", shape, parameters);
@@ -46,16 +46,15 @@ void layers_forward(const PerceptronShape& shape, const py::array& parameters, c
     });
 }
 
-void layers_backward(const PerceptronShape& shape, const py::array& parameters, const py::array& inputs,
-              const py::array& d_outputs, py::array d_parameters,
-              std::optional<py::array> d_inputs, bool fused) {
+void layers_backward(const PerceptronShape& shape, const py::array& parameters,
+                     const py::array& inputs, const py::array& d_outputs, py::array d_parameters,
+                     std::optional<py::array> d_inputs, bool fused) {
     dispatch_real("perceptron_backward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         const R* p = network_parameters<R>(args, "parameters", shape, parameters);
         const std::string in_axes = "N " + std::to_string(shape.inputs);
         const R* in = args.in<R>("inputs", inputs, in_axes);
-        const R* d_out =
-            args.in<R>("d_outputs", d_outputs, "N " + std::to_string(shape.outputs()));
+        const R* d_out = args.in<R>("d_outputs", d_outputs, "N " + std::to_string(shape.outputs()));
         R* d_p = args.out<R>("d_parameters", d_parameters, std::to_string(shape.parameters()));
         R* d_in = d_inputs ? args.out<R>("d_inputs", *d_inputs, in_axes) : nullptr;
         const py::gil_scoped_release release;
@@ -80,8 +79,7 @@ void with_hash(const char* function, const HashSettings& settings, const py::arr
                const py::array& points, Use&& use) {
     dispatch_real(function, "table", table, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        const R* t = args.in<R>("table", table,
-                                settings.table_axes());
+        const R* t = args.in<R>("table", table, settings.table_axes());
         const R* p = args.in<R>("points", points, "N " + std::to_string(settings.dimensions));
         if (settings.dimensions == 2)
             use(HashEncoding<R, 2>(settings.levels, settings.features, settings.smoothstep), args,
@@ -93,8 +91,8 @@ void with_hash(const char* function, const HashSettings& settings, const py::arr
 }
 
 std::string features_axes(const HashSettings& settings) {
-    return "N " + std::to_string(settings.levels.size() *
-                                 static_cast<std::size_t>(settings.features));
+    return "N " +
+           std::to_string(settings.levels.size() * static_cast<std::size_t>(settings.features));
 }
 
 void encode_hash(const HashSettings& settings, const py::array& table, const py::array& points,
@@ -115,8 +113,7 @@ void encode_hash_backward(const HashSettings& settings, const py::array& table,
               [&]<class R, int D>(const HashEncoding<R, D>& encoding, ArrayArgs& args, const R* t,
                                   const R* p) {
                   const R* d_out = args.in<R>("d_features", d_features, features_axes(settings));
-                  R* d_t = args.out<R>("d_table", d_table,
-                                       settings.table_axes());
+                  R* d_t = args.out<R>("d_table", d_table, settings.table_axes());
                   R* d_p = d_points ? args.out<R>("d_points", *d_points, "N " + std::to_string(D))
                                     : nullptr;
                   const py::gil_scoped_release release;

@@ -7,7 +7,8 @@
 namespace photograd {
 namespace {
 
-using NeuralArrays = Arrays<3>;  // table (rows, F) or (0, 1), density and color network's parameters
+using NeuralArrays =
+    Arrays<3>;  // table (rows, F) or (0, 1), density and color network's parameters
 
 /// What a neural field is made of besides its parameters.
 struct NeuralSettings {
@@ -53,8 +54,13 @@ void with_neural(ArrayArgs& args, const NeuralSettings& s, const NeuralArrays& p
     }
     std::optional<HashEncoding<R, 3>> hash;
     if (s.hash) hash.emplace(s.hash->levels, s.hash->features, s.hash->smoothstep);
-    use(NeuralField<R>{hash ? &*hash : nullptr, {3, s.octaves}, table,
-                       Network<R>(s.density, density), Network<R>(s.color, color), cells, options});
+    use(NeuralField<R>{hash ? &*hash : nullptr,
+                       {3, s.octaves},
+                       table,
+                       Network<R>(s.density, density),
+                       Network<R>(s.color, color),
+                       cells,
+                       options});
 }
 
 py::tuple march_neural(const NeuralSettings& s, const NeuralArrays& parameters,
@@ -67,19 +73,18 @@ py::tuple march_neural(const NeuralSettings& s, const NeuralArrays& parameters,
             py::tuple image;
             with_neural<R>(args, s, parameters, occupancy, settings.field, [&](const auto& field) {
                 image = filled_image<R, MarchOutputs<R>>(
-                    {rays.count}, [&](const MarchOutputs<R>& out) {
-                        march(field, rays, settings.march, out);
-                    });
+                    {rays.count},
+                    [&](const MarchOutputs<R>& out) { march(field, rays, settings.march, out); });
             });
             return image;
         });
 }
 
 void march_neural_backward(const NeuralSettings& s, const NeuralArrays& parameters,
-                           const std::optional<py::array>& occupancy,
-                           const MarchSettings& settings, const RayArrays& ray_arrays,
-                           const Arrays<3>& outputs, const Arrays<3>& d_outputs,
-                           NeuralArrays d_parameters, const std::optional<Arrays<2>>& d_rays) {
+                           const std::optional<py::array>& occupancy, const MarchSettings& settings,
+                           const RayArrays& ray_arrays, const Arrays<3>& outputs,
+                           const Arrays<3>& d_outputs, NeuralArrays d_parameters,
+                           const std::optional<Arrays<2>>& d_rays) {
     dispatch_real(
         "march_neural_backward", "density", parameters[1], [&](auto real, ArrayArgs& args) {
             using R = decltype(real);
@@ -89,8 +94,8 @@ void march_neural_backward(const NeuralSettings& s, const NeuralArrays& paramete
                 MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);
             R* d_table =
                 s.hash ? args.out<R>("d_table", d_parameters[0], s.hash->table_axes()) : nullptr;
-            R* d_density = args.out<R>("d_density", d_parameters[1],
-                                       std::to_string(s.density.parameters()));
+            R* d_density =
+                args.out<R>("d_density", d_parameters[1], std::to_string(s.density.parameters()));
             R* d_color =
                 args.out<R>("d_color", d_parameters[2], std::to_string(s.color.parameters()));
             with_neural<R>(args, s, parameters, occupancy, settings.field, [&](const auto& field) {

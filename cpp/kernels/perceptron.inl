@@ -1,5 +1,5 @@
-// A multilayer perceptron at a block of inputs, forward and backward: all layers of one block follow
-// each other, so that its numbers stay in the cache.
+// A multilayer perceptron at a block of inputs, forward and backward. All layers of one block
+// follow each other, so that its numbers stay in the cache.
 //
 // With X (takes, samples) and Z = W X + b, the three products are
 //   forward      Z = W X                  backward     d_X = W^T d_Z,   d_W = d_Z X^T
@@ -42,19 +42,18 @@ static void activate_block_backward(Activation kind, int rows, int columns, cons
                                     float* d) {
     const auto apply = [&](auto derivative) {
         for_lanes(rows, columns, [&](int at) {
-            for (int i = 0; i < lane_count; ++i)
-                d[at + i] = d[at + i] * derivative(y[at + i]);
+            for (int i = 0; i < lane_count; ++i) d[at + i] = d[at + i] * derivative(y[at + i]);
         });
     };
     switch (kind) {
-        case Activation::relu: return apply(
-                [](float at) { return derivative_at_value(Activation::relu, at); });
-        case Activation::softplus: return apply(
-                [](float at) { return derivative_at_value(Activation::softplus, at); });
-        case Activation::exp: return apply(
-                [](float at) { return derivative_at_value(Activation::exp, at); });
-        case Activation::sigmoid: return apply(
-                [](float at) { return derivative_at_value(Activation::sigmoid, at); });
+        case Activation::relu:
+            return apply([](float at) { return derivative_at_value(Activation::relu, at); });
+        case Activation::softplus:
+            return apply([](float at) { return derivative_at_value(Activation::softplus, at); });
+        case Activation::exp:
+            return apply([](float at) { return derivative_at_value(Activation::exp, at); });
+        case Activation::sigmoid:
+            return apply([](float at) { return derivative_at_value(Activation::sigmoid, at); });
         default: return;
     }
 }

@@ -190,7 +190,7 @@ def test_smoothstep_has_no_jump_at_a_face_and_linear_has_one() -> None:
         _, d_points = encoding.encode_backward(table, sides, np.ones((2, 1)), d_points=True)
         assert d_points is not None
         jump = abs(d_points[1, 0] - d_points[0, 0])
-        assert (jump < 1e-6) is smoothstep, jump
+        assert bool(jump < 1e-6) is smoothstep, jump
 
 
 def test_rows_that_no_point_takes_have_no_derivative() -> None:

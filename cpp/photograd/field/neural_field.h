@@ -1,5 +1,5 @@
-// A radiance field by networks [Mildenhall2020, Mueller2022]: density and features from the position,
-// color from the features and the direction.
+// A radiance field by networks [Mildenhall2020, Mueller2022]: density and features from the
+// position, color from the features and the direction.
 //
 //   e = encoding(p)                       hash or frequencies, p in the unit cube of the box
 //   (s, g_1 .. g_G) = density network(e)  sigma_t = scale activation(s)
@@ -9,8 +9,8 @@
 // Density does not depend on the direction. Cells of an occupancy grid that are marked empty are
 // skipped: nothing is evaluated there, and density is 0.
 //
-// Adjoint: that of the two networks, one behind the other, then of the encoding. Tables are shared by
-// all rays: what a slab of rays asks of them is recorded, and added up level by level.
+// Adjoint: that of the two networks, one behind the other, then of the encoding. Tables are shared
+// by all rays: what a slab of rays adds to them is recorded, and added up level by level.
 #pragma once
 
 #include <array>
@@ -103,9 +103,8 @@ struct NeuralField {
             encode(unit + 3 * first, static_cast<int>(n), values.inputs());
             density.forward(values, static_cast<int>(n));
             for (std::int64_t i = 0; i < n; ++i)
-                sigma_t[first + i] =
-                    static_cast<R>(options.density_scale) *
-                    activate(options.density_activation, values.outputs()[i]);
+                sigma_t[first + i] = static_cast<R>(options.density_scale) *
+                                     activate(options.density_activation, values.outputs()[i]);
         });
     }
 
@@ -299,7 +298,8 @@ private:
         }
     }
     void record(const Block& block, const R* d_encoded, typename Sink::Chunk& own) const {
-        own.points.insert(own.points.end(), block.unit.begin(), block.unit.begin() + 3 * block.count);
+        own.points.insert(own.points.end(), block.unit.begin(),
+                          block.unit.begin() + 3 * block.count);
         const std::size_t width = static_cast<std::size_t>(encoded()), first = own.d_encoded.size();
         own.d_encoded.resize(first + width * static_cast<std::size_t>(block.count));
         for (int i = 0; i < block.count; ++i)

@@ -114,8 +114,8 @@ void perceptron_backward(const PerceptronShape& shape, const R* parameters, std:
 
 template void perceptron_forward(const PerceptronShape&, const float*, std::int64_t, const float*,
                                  float*, bool);
-template void perceptron_forward(const PerceptronShape&, const double*, std::int64_t,
-                                 const double*, double*, bool);
+template void perceptron_forward(const PerceptronShape&, const double*, std::int64_t, const double*,
+                                 double*, bool);
 template void perceptron_backward(const PerceptronShape&, const float*, std::int64_t, const float*,
                                   const float*, float*, float*, bool);
 template void perceptron_backward(const PerceptronShape&, const double*, std::int64_t,

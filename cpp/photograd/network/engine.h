@@ -1,5 +1,5 @@
-// Multilayer perceptrons at a block of up to 128 samples: a network, the values of a block, and sums
-// of derivatives. Two engines of one form:
+// Multilayer perceptrons at a block of up to 128 samples: a network, the values of a block, and
+// sums of derivatives. Two engines of one form:
 //
 //   KernelNetwork      float, by the kernel
 //   PlainNetwork<R>    the formulas of network/perceptron.h, sample by sample
@@ -57,9 +57,7 @@ public:
         v.numbers_.resize(static_cast<std::size_t>(workspace_));
         v.outputs_ = layers_.back().output;
     }
-    void forward(Values& v, int samples) const {
-        kernels().perceptron_forward(block(v, samples));
-    }
+    void forward(Values& v, int samples) const { kernels().perceptron_forward(block(v, samples)); }
 
     /// Sums of derivatives with respect to the parameters.
     class Gradient {

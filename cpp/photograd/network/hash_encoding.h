@@ -26,7 +26,7 @@
 namespace photograd {
 
 struct HashLevel {
-    std::int32_t resolution;  // cells along an axis
+    std::int32_t resolution;   // cells along an axis
     std::int64_t first, rows;  // of the table of all levels
     bool dense;
 };
@@ -119,7 +119,8 @@ public:
         for (std::int64_t s = begin; s < end; ++s)
             for (std::size_t l = 0; l < levels_.size(); ++l) {
                 const Corners c = corners(levels_[l], points + D * s);
-                const R* d = d_out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
+                const R* d =
+                    d_out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
                 for (int k = 0; k < 1 << D; ++k) {
                     const R* from = table + features_ * (levels_[l].first + c.row[std::size_t(k)]);
                     R along = R(0);

@@ -1,5 +1,5 @@
-// One-blob encoding [Mueller2019, Sec. 4.3] of numbers in [0, 1]: K bins hold the values of a Gaussian
-// around the number, with a standard deviation of one bin, at the bins' centers:
+// One-blob encoding [Mueller2019, Sec. 4.3] of numbers in [0, 1]: K bins hold the values of a
+// Gaussian around the number, with a standard deviation of one bin, at the bins' centers:
 //
 //   feature_i = exp(-K^2 (c_i - p)^2 / 2),  c_i = (i + 1/2) / K
 //

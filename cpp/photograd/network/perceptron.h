@@ -41,7 +41,8 @@ public:
             const R* b = W + width * x.size();
             for (std::size_t u = 0; u < width; ++u) {
                 R z = b[u];
-                for (std::size_t k = 0; k < x.size(); ++k) z = std::fma(W[u * x.size() + k], x[k], z);
+                for (std::size_t k = 0; k < x.size(); ++k)
+                    z = std::fma(W[u * x.size() + k], x[k], z);
                 y.push_back(activate(shape_.activation(l), z));
             }
             if (l + 1 == shape_.skip) y.insert(y.end(), input.begin(), input.end());

@@ -26,6 +26,10 @@ class FrequencyEncoding:
     def __init__(self, octaves: int, *, dimensions: int = 3) -> None:
         """State the size.
 
+        Args:
+            octaves: 0 to 24.
+            dimensions: coordinates of a point.
+
         Raises:
             RangeError: octaves outside of 0 to 24, or no dimension.
         """
@@ -80,6 +84,10 @@ class OneBlobEncoding:
 
     def __init__(self, bins: int, *, dimensions: int = 3) -> None:
         """State the size.
+
+        Args:
+            bins: 1 to 256, over [0, 1].
+            dimensions: coordinates of a point.
 
         Raises:
             RangeError: bins outside of 1 to 256, or no dimension.

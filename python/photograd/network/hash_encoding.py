@@ -43,7 +43,7 @@ class HashEncoding:
         levels: coarse to fine.
         features: numbers in a row.
         rows: of the table of all levels.
-        outputs: numbers that a point becomes, levels times features.
+        settings: the core's form of the levels.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class HashEncoding:
         Raises:
             RangeError: anything else.
         """
-        self._settings = Arguments("HashEncoding").run(
+        self.settings = Arguments("HashEncoding").run(
             _core.HashSettings, dimensions, list(resolutions), log2_rows, features, smoothstep
         )
         self.dimensions, self.features = dimensions, features
-        self.levels = tuple(Level(*level) for level in self._settings.levels)
-        self.rows: int = self._settings.rows
+        self.levels = tuple(Level(*level) for level in self.settings.levels)
+        self.rows: int = self.settings.rows
 
     @classmethod
     def geometric(
@@ -87,6 +87,15 @@ class HashEncoding:
         smoothstep: bool = False,
     ) -> HashEncoding:
         """Resolutions floor(coarsest b^l), b = (finest / coarsest)^(1 / (levels - 1)) [Eqs. 2, 3].
+
+        Args:
+            levels: 1 to 32.
+            coarsest: cells along an axis of the first level.
+            finest: cells along an axis of the last.
+            dimensions: 2 or 3.
+            log2_rows: of the largest table of a level.
+            features: in a row.
+            smoothstep: as in the constructor.
 
         Raises:
             RangeError: no levels, or finest below coarsest, or what the constructor refuses.
@@ -141,7 +150,7 @@ class HashEncoding:
         call = Arguments("HashEncoding.encode")
         table, points = self._arrays(call, table, points)
         features = np.empty((len(points), self.outputs), points.dtype)
-        call.run(_core.hash_encode, self._settings, table, points, features)
+        call.run(_core.hash_encode, self.settings, table, points, features)
         return features
 
     def encode_backward(
@@ -178,7 +187,7 @@ class HashEncoding:
         d_table = np.zeros_like(table) if out is None else out
         d_p = np.zeros_like(points) if d_points else None
         arrays = (table, points, d_features, d_table, d_p)
-        call.run(_core.hash_encode_backward, self._settings, *arrays)
+        call.run(_core.hash_encode_backward, self.settings, *arrays)
         return d_table, d_p
 
     def _arrays(self, call: Arguments, table: Array, points: Array) -> tuple[Array, Array]:

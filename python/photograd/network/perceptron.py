@@ -30,6 +30,7 @@ class Perceptron:
         widths: numbers that each layer gives; the last are the outputs.
         skip: the layer that takes the input again, behind what the layer before it gives
             [Park2019]; 0 for none.
+        shape: the core's form of the layers.
         count: numbers of the parameters: W_0 (widths[0], inputs) row by row, b_0, W_1, ...
     """
 
@@ -57,12 +58,12 @@ class Perceptron:
         for name, value in {"hidden": hidden, "output": output}.items():
             typed("Perceptron", name, Activation, value)
         codes = _ACTIVATIONS.index(hidden), _ACTIVATIONS.index(output)
-        self._shape = Arguments("Perceptron").run(
+        self.shape = Arguments("Perceptron").run(
             _core.PerceptronShape, inputs, list(widths), *codes, skip
         )
         self.inputs, self.widths, self.skip = inputs, tuple(widths), skip
         self.hidden, self.output = hidden, output
-        self.count: int = self._shape.parameters
+        self.count: int = self.shape.parameters
 
     @property
     def outputs(self) -> int:
@@ -124,7 +125,7 @@ class Perceptron:
         parameters = call.array("parameters", parameters, (self.count,))
         inputs = call.array("inputs", inputs, ("N", self.inputs))
         outputs = np.empty((len(inputs), self.outputs), inputs.dtype)
-        call.run(_core.perceptron_forward, self._shape, parameters, inputs, outputs, fused)
+        call.run(_core.perceptron_forward, self.shape, parameters, inputs, outputs, fused)
         return outputs
 
     def backward(
@@ -163,7 +164,7 @@ class Perceptron:
         d_parameters = np.zeros_like(parameters) if out is None else out
         d_x = np.empty_like(inputs) if d_inputs else None
         arrays = (parameters, inputs, d_outputs, d_parameters, d_x)
-        call.run(_core.perceptron_backward, self._shape, *arrays, fused)
+        call.run(_core.perceptron_backward, self.shape, *arrays, fused)
         return d_parameters, d_x
 
     def _takes(self, layer: int) -> int:
