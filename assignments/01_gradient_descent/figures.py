@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 from photograd_course.viz import style
+from photograd_course.viz.handout import figures_of
 
 PURPLE = "#542788"
 BLUE, RED_, ORANGE, GRAY, INK = style.BLUE, style.RED, style.ORANGE, style.GRAY, style.INK
@@ -56,20 +55,19 @@ def fig1_two_errors(module):
         "central ones are best near 1e-5": (float(np.log10(best)), -6.5, -4.0),
         "there they are a hundred times better": (float(forward.min() / central.min()), 100.0, 1e6),
     }
-    with style.house_style():
-        figure, (axes,) = _panels([5.2], 2.9)
-        axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
-        axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
-        guide = np.array([3e-4, 3e-1])
-        axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
-        axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
-        axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
-        axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
-        axes.annotate("rounding: slope -1", (3e-11, 2e-4), color=style.GUIDE)
-        axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
-        axes.set_title("derivative of exp from its values, nine points between 0.3 and 1.1")
-        axes.legend(loc="lower left")
-        axes.grid(visible=True)
+    figure, (axes,) = _panels([5.2], 2.9)
+    axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
+    axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
+    guide = np.array([3e-4, 3e-1])
+    axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
+    axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
+    axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
+    axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
+    axes.annotate("rounding: slope -1", (3e-11, 2e-4), color=style.GUIDE)
+    axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
+    axes.set_title("derivative of exp from its values, nine points between 0.3 and 1.1")
+    axes.legend(loc="lower left")
+    axes.grid(visible=True)
     return figure, facts
 
 
@@ -89,27 +87,26 @@ def fig2_step_lengths(module):
         "at 2.1 it has grown tenfold": (float(np.abs(x[2.1][-1])), 9.0, 11.0),
         "only 2.1 is said to be wrong": [w[2] for w in walks.values()] == [False] * 4 + [True],
     }
-    with style.house_style():
-        figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
-        steps = np.arange(n + 1)
-        looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
-        for r, (color, mark) in looks.items():
-            size = 5.5 if r == 0.2 else 3.2  # seen behind 1.8
-            left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
-            right.semilogy(
-                steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
-            )
-        left.axhline(0.0, color=GRAY, lw=0.8)
-        left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
-        left.set_title("points")
-        right.set(xlabel="step k", ylim=(2e-3, 60))
-        right.set_title("distance to the minimum")
-        right.legend(
-            title="tau lambda", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2
+    figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
+    steps = np.arange(n + 1)
+    looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
+    for r, (color, mark) in looks.items():
+        size = 5.5 if r == 0.2 else 3.2  # seen behind 1.8
+        left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
+        right.semilogy(
+            steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
         )
-        for axes in (left, right):
-            axes.grid(visible=True)
-            axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
+    left.axhline(0.0, color=GRAY, lw=0.8)
+    left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
+    left.set_title("points")
+    right.set(xlabel="step k", ylim=(2e-3, 60))
+    right.set_title("distance to the minimum")
+    right.legend(
+        title="tau lambda", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2
+    )
+    for axes in (left, right):
+        axes.grid(visible=True)
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
     return figure, facts
 
 
@@ -137,35 +134,34 @@ def fig3_two_valleys(module):
         "and ends on the left": (float(long[-1] - left_end), -1e-6, 1e-6),
     }
     grid = np.linspace(-1.65, 1.8, 300)
-    with style.house_style():
-        figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
-        shown = (
-            (
-                "short steps, tau = 0.05",
-                (short_left, BLUE, "o", "from 0"),
-                (short_right, ORANGE, "s", "from 0.1"),
-            ),
-            ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
-        )
-        for axes, (title, *walks) in zip(panels, shown, strict=True):
-            axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
-            for x, color, mark, label in walks:
-                axes.plot(
-                    x,
-                    [f(each) for each in x],
-                    f"{mark}-",
-                    color=color,
-                    ms=4,
-                    lw=0.8,
-                    label=label,
-                    mec="white",
-                    mew=0.5,
-                )
-            axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
-            axes.set_title(title)
-            axes.legend(loc="upper center")
-            axes.grid(visible=True)
-        panels[0].set_ylabel("f(x)")
+    figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
+    shown = (
+        (
+            "short steps, tau = 0.05",
+            (short_left, BLUE, "o", "from 0"),
+            (short_right, ORANGE, "s", "from 0.1"),
+        ),
+        ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
+    )
+    for axes, (title, *walks) in zip(panels, shown, strict=True):
+        axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
+        for x, color, mark, label in walks:
+            axes.plot(
+                x,
+                [f(each) for each in x],
+                f"{mark}-",
+                color=color,
+                ms=4,
+                lw=0.8,
+                label=label,
+                mec="white",
+                mew=0.5,
+            )
+        axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
+        axes.set_title(title)
+        axes.legend(loc="upper center")
+        axes.grid(visible=True)
+    panels[0].set_ylabel("f(x)")
     return figure, facts
 
 
@@ -213,27 +209,26 @@ def fig4_zigzag(module):
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    with style.house_style():
-        figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
-        for axes, walk, color, mark, title in (
-            (a, fixed, ORANGE, "s", "fixed step 2 / (1 + 20)"),
-            (b, ball, BLUE, "o", "momentum, beta = 0.403"),
-        ):
-            axes.contour(
-                x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
-            )
-            axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
-            axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-            axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
-            axes.set_title(title)
-        a.set_ylabel("steep coordinate")
-        b.tick_params(labelleft=False)
-        steps = np.arange(n + 1)
-        c.semilogy(steps, size["fixed"], color=ORANGE)
-        c.semilogy(steps, size["ball"], color=BLUE)
-        c.set_title("distance")
-        c.set_xlabel("step k")
-        c.grid(visible=True)
+    figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
+    for axes, walk, color, mark, title in (
+        (a, fixed, ORANGE, "s", "fixed step 2 / (1 + 20)"),
+        (b, ball, BLUE, "o", "momentum, beta = 0.403"),
+    ):
+        axes.contour(
+            x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
+        )
+        axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
+        axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
+        axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
+        axes.set_title(title)
+    a.set_ylabel("steep coordinate")
+    b.tick_params(labelleft=False)
+    steps = np.arange(n + 1)
+    c.semilogy(steps, size["fixed"], color=ORANGE)
+    c.semilogy(steps, size["ball"], color=BLUE)
+    c.set_title("distance")
+    c.set_xlabel("step k")
+    c.grid(visible=True)
     return figure, facts
 
 
@@ -280,37 +275,34 @@ def fig5_adam(module):
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    with style.house_style():
-        figure, (a, b, c) = _panels([2.7, 1.6, 1.4], 2.2, gap=0.62)
-        a.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
-        a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
-        a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
-        a.plot(
-            *walks[1000.0][:80:6].T,
-            "D",
-            color=PURPLE,
-            ms=5,
-            mfc="none",
-            mew=0.9,
-            label="Adam, gradient times 1000",
-        )
-        a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-        a.set(
-            xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate"
-        )
-        a.set_title("the way")
-        a.legend(loc="lower right")
-        b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
-        b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
-        b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
-        b.set_title("Adam's steps")
-        b.legend(loc="upper right")
-        c.semilogy(size["Adam"], color=BLUE)
-        c.semilogy(size["gradient descent"], color=ORANGE)
-        c.set_title("distance")
-        c.set_xlabel("step k")
-        for axes in (b, c):
-            axes.grid(visible=True)
+    figure, (a, b, c) = _panels([2.7, 1.6, 1.4], 2.2, gap=0.62)
+    a.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
+    a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
+    a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
+    a.plot(
+        *walks[1000.0][:80:6].T,
+        "D",
+        color=PURPLE,
+        ms=5,
+        mfc="none",
+        mew=0.9,
+        label="Adam, gradient times 1000",
+    )
+    a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
+    a.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate")
+    a.set_title("the way")
+    a.legend(loc="lower right")
+    b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
+    b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
+    b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
+    b.set_title("Adam's steps")
+    b.legend(loc="upper right")
+    c.semilogy(size["Adam"], color=BLUE)
+    c.semilogy(size["gradient descent"], color=ORANGE)
+    c.set_title("distance")
+    c.set_xlabel("step k")
+    for axes in (b, c):
+        axes.grid(visible=True)
     return figure, facts
 
 
@@ -349,39 +341,31 @@ def fig6_armijo(module):
         "with c = 1e-4 it would have taken 0.576": (float(cheap), 0.5759, 0.5761),
     }
     grid = np.linspace(0.0, 1.35, 300)
-    with style.house_style():
-        figure, (axes,) = _panels([5.2], 2.7)
-        axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
-        axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
-        axes.plot(
-            grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001"
-        )
-        shown = [t for t in tried if t < 1.35]
-        axes.plot(
-            shown[:-1],
-            [along(t) for t in shown[:-1]],
-            "X",
-            color=RED_,
-            ms=8,
-            mec="white",
-            label="tried and refused",
-        )
-        axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
-        axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
-        axes.set(xlabel="step length tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
-        axes.legend(loc="upper center", ncols=2)
-        axes.grid(visible=True)
+    figure, (axes,) = _panels([5.2], 2.7)
+    axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
+    axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
+    axes.plot(grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001")
+    shown = [t for t in tried if t < 1.35]
+    axes.plot(
+        shown[:-1],
+        [along(t) for t in shown[:-1]],
+        "X",
+        color=RED_,
+        ms=8,
+        mec="white",
+        label="tried and refused",
+    )
+    axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
+    axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
+    axes.set(xlabel="step length tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
+    axes.legend(loc="upper center", ncols=2)
+    axes.grid(visible=True)
     return figure, facts
 
 
-FIGURES = {
-    "fig1_two_errors": fig1_two_errors,
-    "fig2_step_lengths": fig2_step_lengths,
-    "fig3_two_valleys": fig3_two_valleys,
-    "fig4_zigzag": fig4_zigzag,
-    "fig5_adam": fig5_adam,
-    "fig6_armijo": fig6_armijo,
-}
+FIGURES = figures_of(
+    fig1_two_errors, fig2_step_lengths, fig3_two_valleys, fig4_zigzag, fig5_adam, fig6_armijo
+)
 # For each fact a mutant that makes it untrue, and for each figure one of them.
 RED_FACTS = {
     "fig1_two_errors": {
@@ -443,16 +427,3 @@ HELD = {
         "the roots of Eq. (15) coincide for both curvatures": "follows from tau and beta",
     },
 }
-
-
-def main() -> None:
-    """Draw all figures into figures/."""
-    import descent
-
-    folder = Path(__file__).parent / "figures"
-    for name, make in FIGURES.items():
-        style.save_figure(make(descent)[0], folder / f"{name}.png", style.HANDOUT_DPI)
-
-
-if __name__ == "__main__":
-    main()

@@ -6,22 +6,18 @@
 from __future__ import annotations
 
 import math
-import sys
-from pathlib import Path
 
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
+from photograd_course.viz.handout import figures_of
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
     GRAY,
-    HANDOUT_DPI,
     INK,
     ORANGE,
-    house_style,
     new_figure,
     place_axes,
-    save_figure,
     signed_color_map,
 )
 from photograd_course.viz.style import RED as DARK_RED
@@ -106,15 +102,14 @@ def fig1_worked_graph(module):
     module.backward(f)
     nodes = {"x": x, "y": y, "z": z, "+": a, "×": f}
     at = {"x": (0.9, 0.55), "y": (0.9, 1.75), "+": (2.9, 1.15), "z": (2.9, 2.3), "×": (4.9, 1.65)}
-    with house_style():
-        figure = new_figure(WIDTH, 2.85)
-        axes = graph_axes(figure, 0, 0, WIDTH, 2.85)
-        for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
-            slope = first_slope(nodes[end], nodes[start])
-            arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
-        for name, node in nodes.items():
-            circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
-        key(axes, 5.7, 0.45)
+    figure = new_figure(WIDTH, 2.85)
+    axes = graph_axes(figure, 0, 0, WIDTH, 2.85)
+    for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
+        slope = first_slope(nodes[end], nodes[start])
+        arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
+    for name, node in nodes.items():
+        circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
+    key(axes, 5.7, 0.45)
     facts = {
         "the value is 35": (f.data, 35.0, 35.0),
         "the sum is 7 and its gradient 5": a.data == 7.0 and a.grad == 5.0,
@@ -146,25 +141,24 @@ def fig2_cost(module):
         ladder.append(recorded_uses(module, bottom)[0])
         paths.append(2**k)
     share = np.array(backward) / np.array(forward)
-    with house_style():
-        figure = new_figure(WIDTH, 2.9)
-        left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="differences")
-        left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
-        left.set(
-            title="work for a gradient",
-            xlabel="inputs",
-            ylabel="operations for each value",
-            ylim=(0.3, 2000),
-        )
-        right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
-        right.semilogy(rungs, paths, "s--", color=GRAY, ms=5, label="paths")
-        right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
-        right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
-        for axes in (left, right):
-            axes.legend(loc="upper left", fontsize=SMALL)
-            axes.tick_params(labelsize=SMALL)
-            axes.grid(True, axis="y")
+    figure = new_figure(WIDTH, 2.9)
+    left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
+    left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="differences")
+    left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
+    left.set(
+        title="work for a gradient",
+        xlabel="inputs",
+        ylabel="operations for each value",
+        ylim=(0.3, 2000),
+    )
+    right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
+    right.semilogy(rungs, paths, "s--", color=GRAY, ms=5, label="paths")
+    right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
+    right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
+    for axes in (left, right):
+        axes.legend(loc="upper left", fontsize=SMALL)
+        axes.tick_params(labelsize=SMALL)
+        axes.grid(True, axis="y")
     facts = {
         "backward adds less than two contributions for each value": bool(share.max() < 2.0),
         "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
@@ -188,29 +182,28 @@ def fig3_kink(module):
     steps = (np.maximum(where + h, 2) - np.maximum(where - h, 2)) / (2 * h)
     x, two = module.Value(2.0), module.Value(2.0)
     module.backward(x.maximum(two))
-    with house_style():
-        figure = new_figure(WIDTH, 2.5)
-        left = place_axes(figure, 0.55, 0.35, 2.5, 1.65)
-        left.plot(where, values, color=INK, lw=2)
-        left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
-        right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
-        right.plot(where, steps, "--", color=GRAY, lw=1.8, label="differences, step 0.2")
-        below = where < 2
-        right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
-        right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
-        right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
-        right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
-        right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
-        right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
-        right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
-        right.set(
-            title="its derivative by x",
-            xlabel="x",
-            xticks=[1, 2, 3],
-            yticks=[0, 0.5, 1],
-            ylim=(-0.12, 1.45),
-        )
-        right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
+    figure = new_figure(WIDTH, 2.5)
+    left = place_axes(figure, 0.55, 0.35, 2.5, 1.65)
+    left.plot(where, values, color=INK, lw=2)
+    left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
+    right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
+    right.plot(where, steps, "--", color=GRAY, lw=1.8, label="differences, step 0.2")
+    below = where < 2
+    right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
+    right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
+    right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
+    right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
+    right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
+    right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
+    right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
+    right.set(
+        title="its derivative by x",
+        xlabel="x",
+        xticks=[1, 2, 3],
+        yticks=[0, 0.5, 1],
+        ylim=(-0.12, 1.45),
+    )
+    right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
     far = np.abs(where - 2) > h + 1e-9
     facts = {
         "0 left of the kink, 1 right of it": bool(
@@ -257,10 +250,9 @@ def fig4_order(module):
     uses = (("x", "a"), ("a", "c"), ("c", "b"), ("b", "f"), ("a", "f"))
     h = 1e-5
     right = ((2 + h) ** 8 + (2 + h) ** 2 - (2 - h) ** 8 - (2 - h) ** 2) / (2 * h)
-    with house_style():
-        figure = new_figure(WIDTH, 2.25)
-        for left, name in ((0.0, "level by level"), (3.3, "every user first")):
-            _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
+    figure = new_figure(WIDTH, 2.25)
+    for left, name in ((0.0, "level by level"), (3.3, "every user first")):
+        _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
         "the engine's gradient agrees with differences": (
@@ -300,35 +292,34 @@ def fig5_uses_add_up(module):
     module.backward(f)
     by_sum = sum(slopes_of(total, x)) * total.grad
     by_square = [slope * square.grad for slope in slopes_of(square, x)]
-    with house_style():
-        figure = new_figure(WIDTH, 2.7)
-        axes = graph_axes(figure, 0, 0, 3.5, 2.7)
-        places = {
-            "x": (0.55, 0.95),
-            "y": (0.55, 2.2),
-            "+": (1.75, 1.75),
-            "×": (1.75, 0.6),
-            "f": (3.0, 1.2),
-        }
-        arrow(axes, places["y"], places["+"])
-        arrow(axes, places["+"], places["f"])
-        arrow(axes, places["×"], places["f"])
-        arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
-        for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0)
-        for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
-            label = "+" if name == "f" else name
-            circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
-        plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
-        h = np.linspace(-2.0, 2.0, 41)
-        plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
-        for slope, color, style, name in (
-            (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
-            (by_sum, GRAY, ":", f"slope {by_sum:g}, the sum alone"),
-        ):
-            plot.plot(5 + h, 34 + slope * h, style, color=color, lw=1.8, label=name)
-        plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
-        plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
+    figure = new_figure(WIDTH, 2.7)
+    axes = graph_axes(figure, 0, 0, 3.5, 2.7)
+    places = {
+        "x": (0.55, 0.95),
+        "y": (0.55, 2.2),
+        "+": (1.75, 1.75),
+        "×": (1.75, 0.6),
+        "f": (3.0, 1.2),
+    }
+    arrow(axes, places["y"], places["+"])
+    arrow(axes, places["+"], places["f"])
+    arrow(axes, places["×"], places["f"])
+    arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
+    for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
+        arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0)
+    for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
+        label = "+" if name == "f" else name
+        circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
+    plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
+    h = np.linspace(-2.0, 2.0, 41)
+    plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
+    for slope, color, style, name in (
+        (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
+        (by_sum, GRAY, ":", f"slope {by_sum:g}, the sum alone"),
+    ):
+        plot.plot(5 + h, 34 + slope * h, style, color=color, lw=1.8, label=name)
+    plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
+    plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
         "the value is 34": (f.data, 34.0, 34.0),
@@ -362,20 +353,19 @@ def fig6_steps(module):
     steps = 10.0 ** np.arange(-12, 0.1, 0.5)
     right = np.array([module.grad_check(f, place, eps) for eps in steps])
     wrong = np.array([module.grad_check(lambda x: f(x, 1.01), place, eps) for eps in steps])
-    with house_style():
-        figure = new_figure(WIDTH, 3.0)
-        axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
-        axes.axhline(1e-6, color=DARK_RED, lw=1.2)
-        axes.text(3.5, 1e-6, "accepted below", color=DARK_RED, fontsize=SMALL, va="center")
-        axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
-        axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
-        axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
-        axes.text(3.5, 1e-2, "gradient 1 % off", color=BLUE, fontsize=SMALL, va="center")
-        axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
-        axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
-        axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
-        axes.set(xlabel="eps", ylabel="error reported", xlim=(4e-13, 2), ylim=(1e-13, 3))
-        axes.tick_params(labelsize=SMALL)
+    figure = new_figure(WIDTH, 3.0)
+    axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
+    axes.axhline(1e-6, color=DARK_RED, lw=1.2)
+    axes.text(3.5, 1e-6, "accepted below", color=DARK_RED, fontsize=SMALL, va="center")
+    axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
+    axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
+    axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
+    axes.text(3.5, 1e-2, "gradient 1 % off", color=BLUE, fontsize=SMALL, va="center")
+    axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
+    axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
+    axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
+    axes.set(xlabel="eps", ylabel="error reported", xlim=(4e-13, 2), ylim=(1e-13, 3))
+    axes.tick_params(labelsize=SMALL)
     at = {
         exponent: int(np.argmin(np.abs(np.log10(steps) - exponent)))
         for exponent in (-12, -5, -3, -2)
@@ -428,30 +418,27 @@ def fig7_picture(module):
     step = np.zeros(start.shape)
     step[5, 4] = 1e-5
     slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
-    with house_style():
-        figure = new_figure(WIDTH, 1.85)
-        for k, (name, picture) in enumerate(
-            (("texels", start), ("should be seen", target), ("after one step", after))
-        ):
-            axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
-            axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
-            axes.set_title(name, fontsize=SMALL)
-            axes.set(xticks=[], yticks=[])
-        top = float(np.abs(by_pixel).max()) or 1.0
-        for k, (name, picture) in enumerate(
-            (("dL / d seen", by_pixel), ("dL / d texels", by_texel))
-        ):
-            axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
-            image = axes.imshow(
-                picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
-            )
-            axes.set_title(name, fontsize=SMALL)
-            axes.set(xticks=[], yticks=[])
-        bar = figure.colorbar(
-            image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09), orientation="horizontal"
+    figure = new_figure(WIDTH, 1.85)
+    for k, (name, picture) in enumerate(
+        (("texels", start), ("should be seen", target), ("after one step", after))
+    ):
+        axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
+        axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+        axes.set_title(name, fontsize=SMALL)
+        axes.set(xticks=[], yticks=[])
+    top = float(np.abs(by_pixel).max()) or 1.0
+    for k, (name, picture) in enumerate((("dL / d seen", by_pixel), ("dL / d texels", by_texel))):
+        axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
+        image = axes.imshow(
+            picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
-        bar.set_ticks([-0.5, 0.0, 0.5])
-        bar.ax.tick_params(labelsize=8)
+        axes.set_title(name, fontsize=SMALL)
+        axes.set(xticks=[], yticks=[])
+    bar = figure.colorbar(
+        image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09), orientation="horizontal"
+    )
+    bar.set_ticks([-0.5, 0.0, 0.5])
+    bar.ax.tick_params(labelsize=8)
     facts = {
         "negative where the picture is too dark": bool((by_texel[4:8, 6:10] < 0).all()),
         "positive where it is too bright": bool((by_texel[[0, -1]] > 0).all()),
@@ -464,15 +451,9 @@ def fig7_picture(module):
     return figure, facts
 
 
-FIGURES = {
-    "fig1_worked_graph": fig1_worked_graph,
-    "fig2_cost": fig2_cost,
-    "fig3_kink": fig3_kink,
-    "fig4_order": fig4_order,
-    "fig5_uses_add_up": fig5_uses_add_up,
-    "fig6_steps": fig6_steps,
-    "fig7_picture": fig7_picture,
-}
+FIGURES = figures_of(
+    fig1_worked_graph, fig2_cost, fig3_kink, fig4_order, fig5_uses_add_up, fig6_steps, fig7_picture
+)
 RED = {
     "fig1_worked_graph": "product_no_swap",
     "fig2_cost": "order_with_repeats",
@@ -482,14 +463,3 @@ RED = {
     "fig6_steps": "check_one_sided",
     "fig7_picture": "forgets_the_chain",
 }
-
-
-if __name__ == "__main__":
-    here = Path(__file__).parent
-    sys.path.insert(0, str(here))
-    import engine
-
-    for name, make in FIGURES.items():
-        drawn, held = make(engine)
-        path = save_figure(drawn, here / "figures" / f"{name}.png", HANDOUT_DPI)
-        print(path.stat().st_size, name, held)

@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
 
 
 def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
@@ -31,37 +30,35 @@ def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
         "never outside the texels' range": (float(surface.min()), 0.1 - 1e-12, 1.0),
         "bends only at columns of centers": bool(len(bent) >= 3 and to_center.max() < 1 / 361),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        left, middle, right = figure.subplots(1, 3)
-        extent = (0.0, 1.0, 1.0, 0.0)
-        shown = ((left, T[:, :, 0], "texels T[i, j]"), (middle, surface, "sample at (u, v)"))
-        for axes, values, title in shown:
-            axes.imshow(values, cmap="gray", vmin=0, vmax=1, extent=extent, aspect=2 / 3)
-            axes.plot(*_centers((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
-            axes.set_title(title)
-            axes.set_xlabel("u")
-            axes.set_xticks([0, 0.5, 1])
-            axes.set_yticks([0, 0.5, 1])
-        left.set_ylabel("v")
-        middle.axhline(v, color=BLUE, linewidth=1.5, linestyle="--")
-        for i in range(2):
-            for j in range(3):
-                x, y = (j + 0.5) / 3, (i + 0.5) / 2
-                left.annotate(
-                    f"[{i}, {j}]\n\n{T[i, j, 0]:.1f}",
-                    (x, y),
-                    ha="center",
-                    va="center",
-                    fontsize=8,
-                    color="white" if T[i, j, 0] < 0.6 else INK,
-                )
-        right.plot(u, line, color=BLUE)
-        for c in (1 / 6, 0.5, 5 / 6):
-            right.axvline(c, color=ORANGE, linewidth=0.8, linestyle=":")
-        right.set(title=f"along v = {v}", xlabel="u", xlim=(0, 1), ylim=(0, 1), box_aspect=2 / 3)
-        right.set(xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
-        right.grid(visible=True)
+    figure, (left, middle, right) = subplots(7.0, 2.1, 1, 3)
+    extent = (0.0, 1.0, 1.0, 0.0)
+    shown = ((left, T[:, :, 0], "texels T[i, j]"), (middle, surface, "sample at (u, v)"))
+    for axes, values, title in shown:
+        axes.imshow(values, cmap="gray", vmin=0, vmax=1, extent=extent, aspect=2 / 3)
+        axes.plot(*_centers((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
+        axes.set_title(title)
+        axes.set_xlabel("u")
+        axes.set_xticks([0, 0.5, 1])
+        axes.set_yticks([0, 0.5, 1])
+    left.set_ylabel("v")
+    middle.axhline(v, color=BLUE, linewidth=1.5, linestyle="--")
+    for i in range(2):
+        for j in range(3):
+            x, y = (j + 0.5) / 3, (i + 0.5) / 2
+            left.annotate(
+                f"[{i}, {j}]\n\n{T[i, j, 0]:.1f}",
+                (x, y),
+                ha="center",
+                va="center",
+                fontsize=8,
+                color="white" if T[i, j, 0] < 0.6 else INK,
+            )
+    right.plot(u, line, color=BLUE)
+    for c in (1 / 6, 0.5, 5 / 6):
+        right.axvline(c, color=ORANGE, linewidth=0.8, linestyle=":")
+    right.set(title=f"along v = {v}", xlabel="u", xlim=(0, 1), ylim=(0, 1), box_aspect=2 / 3)
+    right.set(xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
+    right.grid(visible=True)
     return figure, facts
 
 
@@ -84,39 +81,37 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         "the corner texel gets all of its sample": (float(back[3, 5]), 0.8 - 1e-12, 0.8 + 1e-12),
         "<S x, g> = <x, S* g>": (float(left - right), -1e-12, 1e-12),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.75), layout="constrained")
-        panels = figure.subplots(1, 2)
-        titles = ("samples with their g", "adjoint: what each texel gets")
-        for axes, title in zip(panels, titles, strict=True):
-            _grid(axes, shape)
-            axes.set_title(title)
-        panels[0].plot(*_centers(shape).T, ".", color=GRAY, markersize=4)
-        colors = {"cmap": signed_color_map(), "vmin": -1, "vmax": 1}
-        panels[0].scatter(
-            *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colors
+    figure, panels = subplots(7.0, 2.75, 1, 2)
+    titles = ("samples with their g", "adjoint: what each texel gets")
+    for axes, title in zip(panels, titles, strict=True):
+        _grid(axes, shape)
+        axes.set_title(title)
+    panels[0].plot(*_centers(shape).T, ".", color=GRAY, markersize=4)
+    colors = {"cmap": signed_color_map(), "vmin": -1, "vmax": 1}
+    panels[0].scatter(
+        *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colors
+    )
+    for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
+        note(
+            panels[0],
+            value,
+            uv[k],
+            (0, 9),
+            ha="right" if k == 2 else "center",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
         )
-        for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
-            panels[0].annotate(
-                value,
-                uv[k],
-                (0, 9),
-                textcoords="offset points",
-                ha="right" if k == 2 else "center",
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-            )
-        panels[0].set(xlim=(0, 1), ylim=(1, 0))
-        image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colors)
-        for i, j in np.argwhere(back != 0):
-            panels[1].text(
-                (j + 0.5) / 6,
-                (i + 0.5) / 4,
-                f"{back[i, j]:+.2f}".replace("-", "−"),
-                ha="center",
-                va="center",
-                color="white" if abs(back[i, j]) > 0.55 else INK,
-            )
-        figure.colorbar(image, ax=panels[1], ticks=[-1, 0, 1], shrink=0.8)
+    panels[0].set(xlim=(0, 1), ylim=(1, 0))
+    image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colors)
+    for i, j in np.argwhere(back != 0):
+        panels[1].text(
+            (j + 0.5) / 6,
+            (i + 0.5) / 4,
+            f"{back[i, j]:+.2f}".replace("-", "−"),
+            ha="center",
+            va="center",
+            color="white" if abs(back[i, j]) > 0.55 else INK,
+        )
+    figure.colorbar(image, ax=panels[1], ticks=[-1, 0, 1], shrink=0.8)
     return figure, facts
 
 
@@ -146,29 +141,27 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
             0.75,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.2), layout="constrained")
-        panels = figure.subplots(2, 2)
-        top = 0.4
-        shown = ((T, "T after 2 steps"), (truth, "truth"))
-        for axes, (values, title) in zip(panels[0], shown, strict=True):
-            axes.imshow(_screen(values), interpolation="nearest")
-            axes.set_title(title)
-        signed = ((missing, "what is missing: truth − T"), (added, "what one step adds: −τ ∂L/∂T"))
-        colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
-        for axes, (values, title) in zip(panels[1], signed, strict=True):
-            image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
-            axes.set_title(title)
-        for axes in panels.flat:
-            axes.set(xticks=[], yticks=[])
-        figure.colorbar(
-            image,
-            ax=panels,
-            ticks=[-top, 0, top],
-            shrink=0.45,
-            anchor=(0, 0.03),
-            label="mean of channels",
-        )
+    figure, panels = subplots(7.0, 4.2, 2, 2)
+    top = 0.4
+    shown = ((T, "T after 2 steps"), (truth, "truth"))
+    for axes, (values, title) in zip(panels[0], shown, strict=True):
+        axes.imshow(_screen(values), interpolation="nearest")
+        axes.set_title(title)
+    signed = ((missing, "what is missing: truth − T"), (added, "what one step adds: −τ ∂L/∂T"))
+    colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
+    for axes, (values, title) in zip(panels[1], signed, strict=True):
+        image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
+        axes.set_title(title)
+    for axes in panels.flat:
+        axes.set(xticks=[], yticks=[])
+    figure.colorbar(
+        image,
+        ax=panels,
+        ticks=[-top, 0, top],
+        shrink=0.45,
+        anchor=(0, 0.03),
+        label="mean of channels",
+    )
     return figure, facts
 
 
@@ -195,25 +188,23 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
         "1.05 then loses more than 10 dB": (max(errors[1.05]) - errors[1.05][-1], 10, 100),
         "and it turns after 5 steps or more": (float(peak), 5, 55),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
-        for share, values in errors.items():
-            color, dashes = looks[share]
-            axes.plot(values, color=color, linestyle=dashes, label=f"{share:g}")
-            place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
-            axes.annotate(
-                f"{share:g} · 2/λ",
-                (steps, values[-1]),
-                (4, place),
-                textcoords="offset points",
-                color=color if share != 0.3 else INK,
-                va="center",
-            )
-        axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
-        axes.grid(visible=True)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, axes = subplots(7.0, 2.9)
+    looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
+    for share, values in errors.items():
+        color, dashes = looks[share]
+        axes.plot(values, color=color, linestyle=dashes, label=f"{share:g}")
+        place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
+        note(
+            axes,
+            f"{share:g} · 2/λ",
+            (steps, values[-1]),
+            (4, place),
+            color=color if share != 0.3 else INK,
+            va="center",
+        )
+    axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -252,18 +243,17 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
             0.6,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.7), layout="constrained")
-        shown = (
-            (samples, "1,500 of the samples"),
-            (start, "start: noise"),
-            (early, "3 steps"),
-            (T, "40 steps"),
-        )
-        for k, (values, title) in enumerate(shown):
-            axes = figure.add_subplot(2, 2, k + 1)
-            axes.imshow(_screen(values), interpolation="nearest")
-            axes.set(xticks=[], yticks=[], title=title)
+    figure = Figure(figsize=(7.0, 4.7), layout="constrained")
+    shown = (
+        (samples, "1,500 of the samples"),
+        (start, "start: noise"),
+        (early, "3 steps"),
+        (T, "40 steps"),
+    )
+    for k, (values, title) in enumerate(shown):
+        axes = figure.add_subplot(2, 2, k + 1)
+        axes.imshow(_screen(values), interpolation="nearest")
+        axes.set(xticks=[], yticks=[], title=title)
     return figure, facts
 
 
@@ -293,17 +283,12 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "the mip level is even there": (float(coarse[fine_half].std()), 0, 0.05),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        shown = (
-            (rings, "texture, 128 × 128"),
-            (picked, "every 4th texel"),
-            (coarse, "mip level 2"),
-        )
-        for k, (values, title) in enumerate(shown):
-            axes = figure.add_subplot(1, 3, k + 1)
-            axes.imshow(values[:, :, 0], cmap="gray", vmin=0, vmax=1, interpolation="nearest")
-            axes.set(xticks=[], yticks=[], title=title)
+    figure = Figure(figsize=(7.0, 2.6), layout="constrained")
+    shown = ((rings, "texture, 128 × 128"), (picked, "every 4th texel"), (coarse, "mip level 2"))
+    for k, (values, title) in enumerate(shown):
+        axes = figure.add_subplot(1, 3, k + 1)
+        axes.imshow(values[:, :, 0], cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+        axes.set(xticks=[], yticks=[], title=title)
     return figure, facts
 
 
@@ -377,14 +362,9 @@ def _grid(axes: Axes, shape: tuple[int, int]) -> None:
     axes.set(xlim=(0, 1), ylim=(1, 0), aspect=4 / 6, xticks=[], yticks=[])
 
 
-FIGURES = {
-    "fig1_surface": fig1_surface,
-    "fig2_adjoint": fig2_adjoint,
-    "fig3_residual": fig3_residual,
-    "fig4_step": fig4_step,
-    "fig5_photograph": fig5_photograph,
-    "fig6_mips": fig6_mips,
-}
+FIGURES = figures_of(
+    fig1_surface, fig2_adjoint, fig3_residual, fig4_step, fig5_photograph, fig6_mips
+)
 RED = {
     "fig1_surface": "half_texel",
     "fig2_adjoint": "adjoint_last_wins",

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
@@ -51,31 +52,27 @@ def fig1_furnace(module):
         "repaired it nowhere returns more than came": (float(right.max()), 0.8, 1.0),
         "white plastic of roughness 0.6 returns 1.06 at 0.1": (float(plastic), 1.055, 1.065),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-        panels = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        axes = panels[0]
-        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
-        for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
-            axes.plot(cosines, values, look, color=color, label=f"mirrors, roughness {r:g}")
-        for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
-            axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
-        axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
-        axes.annotate(
-            "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), textcoords="offset points", ha="right"
-        )
-        axes.set(title="facets that mirror all, and Burley's white", ylim=(0, 1.6))
-        axes.legend(loc="lower left", fontsize=6.5)
-        axes = panels[1]
-        axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
-        axes.plot(cosines[2:], right, "--", color=BLUE, label="with 4 π")
-        axes.set(title="Cook and Torrance's, slope 0.4", ylim=(0, 4.4))
-        axes.legend(loc="center right", fontsize=7)
-        for axes in panels:
-            axes.axhline(1, color=FRAME, linewidth=0.8)
-            axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
-            axes.spines[["top", "right"]].set_visible(False)
-        panels[0].set_ylabel("share of the light returned")
+    figure, panels = subplots(7.0, 3.2, 1, 2, width_ratios=(1.5, 1))
+    axes = panels[0]
+    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
+    for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
+        axes.plot(cosines, values, look, color=color, label=f"mirrors, roughness {r:g}")
+    for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
+        axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
+    axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
+    note(axes, "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), ha="right")
+    axes.set(title="facets that mirror all, and Burley's white", ylim=(0, 1.6))
+    axes.legend(loc="lower left", fontsize=6.5)
+    axes = panels[1]
+    axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
+    axes.plot(cosines[2:], right, "--", color=BLUE, label="with 4 π")
+    axes.set(title="Cook and Torrance's, slope 0.4", ylim=(0, 4.4))
+    axes.legend(loc="center right", fontsize=7)
+    for axes in panels:
+        axes.axhline(1, color=FRAME, linewidth=0.8)
+        axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[0].set_ylabel("share of the light returned")
     return figure, facts
 
 
@@ -107,23 +104,21 @@ def fig2_lobes(module):
             1e6,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        panels = figure.subplots(1, 2)
-        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
-        degrees = np.degrees(angle)
-        for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
-            if r > 0.4:
-                panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
-        panels[0].set(title="facets of GGX", ylabel="D V [1/sr]", ylim=(0, 1.5))
-        panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
-        panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
-        panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
-        for axes in panels:
-            axes.axvline(45, color=FRAME, linewidth=0.7)
-            axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
-            axes.spines[["top", "right"]].set_visible(False)
-            axes.legend(loc="upper left", fontsize=7)
+    figure, panels = subplots(7.0, 2.9, 1, 2)
+    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
+    degrees = np.degrees(angle)
+    for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
+        if r > 0.4:
+            panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
+    panels[0].set(title="facets of GGX", ylabel="D V [1/sr]", ylim=(0, 1.5))
+    panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
+    panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
+    panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
+    for axes in panels:
+        axes.axvline(45, color=FRAME, linewidth=0.7)
+        axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(loc="upper left", fontsize=7)
     return figure, facts
 
 
@@ -161,31 +156,29 @@ def fig3_samples(module):
             0.02,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        panels = figure.subplots(1, 3)
-        x = np.linspace(-1, 1, 121)
-        px, py = (each.ravel() for each in np.meshgrid(x, x))
-        pz = np.sqrt(np.maximum(1 - px**2 - py**2, 0))
-        grid = np.stack([px, py, pz], axis=1)
-        for axes, (z, wo, wi) in zip(panels[:2], panels_of, strict=True):
-            density = module.ggx_pdf(np.tile(wo[:1], (len(grid), 1)), grid, np.full(len(grid), r))
-            density = np.where(px**2 + py**2 < 0.995, density, np.nan).reshape(121, 121)
-            axes.imshow(density, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", vmin=0)
-            shown = wi[(wi[:, 2] > 0)][:350]
-            axes.plot(shown[:, 0], shown[:, 1], ".", color="white", markersize=1.6)
-            axes.plot(wo[0, 0], 0, "o", markerfacecolor="none", color=CRIMSON, markersize=6)
-            axes.set(title=f"viewer at cosine {z:g}", xticks=[], yticks=[], xlabel="x")
-            axes.set_ylabel("y")
-        axes = panels[2]
-        bins = np.linspace(0, 4, 41)
-        axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="drawn evenly")
-        axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible facets")
-        axes.axvline(right, color=CRIMSON, linewidth=1)
-        axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
-        axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.legend(fontsize=6.5)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, panels = subplots(7.0, 2.7, 1, 3)
+    x = np.linspace(-1, 1, 121)
+    px, py = (each.ravel() for each in np.meshgrid(x, x))
+    pz = np.sqrt(np.maximum(1 - px**2 - py**2, 0))
+    grid = np.stack([px, py, pz], axis=1)
+    for axes, (z, wo, wi) in zip(panels[:2], panels_of, strict=True):
+        density = module.ggx_pdf(np.tile(wo[:1], (len(grid), 1)), grid, np.full(len(grid), r))
+        density = np.where(px**2 + py**2 < 0.995, density, np.nan).reshape(121, 121)
+        axes.imshow(density, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", vmin=0)
+        shown = wi[(wi[:, 2] > 0)][:350]
+        axes.plot(shown[:, 0], shown[:, 1], ".", color="white", markersize=1.6)
+        axes.plot(wo[0, 0], 0, "o", markerfacecolor="none", color=CRIMSON, markersize=6)
+        axes.set(title=f"viewer at cosine {z:g}", xticks=[], yticks=[], xlabel="x")
+        axes.set_ylabel("y")
+    axes = panels[2]
+    bins = np.linspace(0, 4, 41)
+    axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="drawn evenly")
+    axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible facets")
+    axes.axvline(right, color=CRIMSON, linewidth=1)
+    axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.legend(fontsize=6.5)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -215,15 +208,13 @@ def fig4_blend(module):
             0.9,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(6.0, 2.7), layout="constrained")
-        axes = figure.subplots()
-        axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="lobes blended")
-        axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
-        axes.axhline(1, color=FRAME, linewidth=0.8)
-        axes.set(xlabel="metalness", ylabel="share of the light returned", ylim=(0.6, 1.05))
-        axes.legend(loc="lower left", fontsize=7)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, axes = subplots(6.0, 2.7)
+    axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="lobes blended")
+    axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
+    axes.axhline(1, color=FRAME, linewidth=0.8)
+    axes.set(xlabel="metalness", ylabel="share of the light returned", ylim=(0.6, 1.05))
+    axes.legend(loc="lower left", fontsize=7)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -254,18 +245,17 @@ def fig5_chart(module):
         "the varnish's highlight is nearly white": (float(white[2] / white[0]), 0.75, 1.0),
         "the metal's highlight gets darker to the right": bool((np.diff(falls) < 0).all()),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.4))
-        for row, m in enumerate(metals):
-            for column, r in enumerate(roughs):
-                axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
-                picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
-                # Fewer levels make a smaller file.
-                axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
-                axes.set_axis_off()
-                if row == 0:
-                    axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
-            figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
+    figure = Figure(figsize=(7.0, 4.4))
+    for row, m in enumerate(metals):
+        for column, r in enumerate(roughs):
+            axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
+            picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
+            # Fewer levels make a smaller file.
+            axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
+            axes.set_axis_off()
+            if row == 0:
+                axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
+        figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
     return figure, facts
 
 
@@ -299,27 +289,25 @@ def fig6_by_roughness(module):
         ),
         "in the shadow it is exactly zero": (float(np.abs(slope[dark]).max()), 0, 0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        panels = figure.subplots(1, 3)
-        picture = np.ones((size, size, 3))
-        picture[inside] = srgb_encode(
-            np.clip(module.gltf(wo, wi, *given, np.full(n, r)) * cosine, 0, 1)
-        )
-        panels[0].imshow(picture)
-        panels[0].set_title("plastic, roughness 0.35")
-        top = float(np.quantile(np.abs(slope), 0.99))
-        for axes, values, title in (
-            (panels[1], slope, "∂ brightness / ∂ roughness"),
-            (panels[2], change / step, "difference, step 0.02"),
-        ):
-            field = np.full((size, size), np.nan)
-            field[inside] = values
-            image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
-            axes.set_title(title)
-        for axes in panels:
-            axes.set_axis_off()
-        figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
+    figure, panels = subplots(7.0, 2.6, 1, 3)
+    picture = np.ones((size, size, 3))
+    picture[inside] = srgb_encode(
+        np.clip(module.gltf(wo, wi, *given, np.full(n, r)) * cosine, 0, 1)
+    )
+    panels[0].imshow(picture)
+    panels[0].set_title("plastic, roughness 0.35")
+    top = float(np.quantile(np.abs(slope), 0.99))
+    for axes, values, title in (
+        (panels[1], slope, "∂ brightness / ∂ roughness"),
+        (panels[2], change / step, "difference, step 0.02"),
+    ):
+        field = np.full((size, size), np.nan)
+        field[inside] = values
+        image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
+        axes.set_title(title)
+    for axes in panels:
+        axes.set_axis_off()
+    figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
     return figure, facts
 
 
@@ -376,14 +364,9 @@ def _ball(module, size, color, m, r):
     return image
 
 
-FIGURES = {
-    "fig1_furnace": fig1_furnace,
-    "fig2_lobes": fig2_lobes,
-    "fig3_samples": fig3_samples,
-    "fig4_blend": fig4_blend,
-    "fig5_chart": fig5_chart,
-    "fig6_by_roughness": fig6_by_roughness,
-}
+FIGURES = figures_of(
+    fig1_furnace, fig2_lobes, fig3_samples, fig4_blend, fig5_chart, fig6_by_roughness
+)
 RED = {
     "fig1_furnace": "furnace_no_cosine",
     "fig2_lobes": "lobe_not_squared",

@@ -8,11 +8,9 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 
 
 def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
@@ -38,24 +36,14 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
         "from 1e8 it misses a tenth or more": (float(missed[8]), 0.1, 1.0),
         "ours below 1e-7 at 1e8": (ours[8], 0.0, 1e-7),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        tiny = 1e-17
-        axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
-        axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
-        axes.annotate(
-            "quadratic",
-            (away[6], quadratic[6]),
-            (-58, 2),
-            color=CRIMSON,
-            textcoords="offset points",
-        )
-        axes.annotate(
-            "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE, textcoords="offset points"
-        )
-        axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.9)
+    tiny = 1e-17
+    axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
+    axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
+    note(axes, "quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON)
+    note(axes, "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE)
+    axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
+    plain_axes(axes)
     return figure, facts
 
 
@@ -90,22 +78,20 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
         "from a corner more than one in a hundred": (float(np.mean(lost_by_corner)), 0.01, 1.0),
         "weights give back the place": (float(max(sums, default=1.0)), 0.0, 1e-12),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
-        left.plot([0, 1], [0, 1], color="white", linewidth=0.8)
-        for triangle in square[:, :, :2]:
-            for letter, corner in zip("abc", triangle, strict=True):
-                place = corner + 0.17 * (triangle.mean(axis=0) - corner)
-                left.annotate(letter, place, color="white", ha="center", va="center")
-        left.set(xticks=[], yticks=[], title="weights of a, b, c")
-        for one, two in ends:
-            right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
-        right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
-        right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
-        title = f"lost from a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
-        right.set(xticks=[], yticks=[], aspect="equal", title=title)
+    figure, (left, right) = subplots(7.0, 3.3, 1, 2)
+    left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
+    left.plot([0, 1], [0, 1], color="white", linewidth=0.8)
+    for triangle in square[:, :, :2]:
+        for letter, corner in zip("abc", triangle, strict=True):
+            place = corner + 0.17 * (triangle.mean(axis=0) - corner)
+            left.annotate(letter, place, color="white", ha="center", va="center")
+    left.set(xticks=[], yticks=[], title="weights of a, b, c")
+    for one, two in ends:
+        right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
+    right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
+    right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
+    title = f"lost from a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
+    right.set(xticks=[], yticks=[], aspect="equal", title=title)
     return figure, facts
 
 
@@ -134,22 +120,20 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
         "all get in and out": bool(entered.all() and left_it.all()),
         "nothing gets out beyond 41.8 degrees": (float(critical), 41.3, 41.9),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
-        for r in range(13):
-            path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
-            left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
-        left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
-        left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
-        degrees = np.degrees(angle)
-        right.plot(degrees, _angle(bent), color=BLUE)
-        right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
-        right.annotate("into glass", (60, 35), (0, -14), color=BLUE, textcoords="offset points")
-        right.annotate("out of it", (35, 60), (-52, 4), color=ORANGE, textcoords="offset points")
-        right.set(xlabel="angle before  [°]", ylabel="behind  [°]", xlim=(0, 90), ylim=(0, 90))
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
+    left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
+    for r in range(13):
+        path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
+        left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
+    left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
+    left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
+    degrees = np.degrees(angle)
+    right.plot(degrees, _angle(bent), color=BLUE)
+    right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
+    note(right, "into glass", (60, 35), (0, -14), color=BLUE)
+    note(right, "out of it", (35, 60), (-52, 4), color=ORANGE)
+    right.set(xlabel="angle before  [°]", ylabel="behind  [°]", xlim=(0, 90), ylim=(0, 90))
+    plain_axes(right)
     return figure, facts
 
 
@@ -193,22 +177,20 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
         "differences agree": (float(np.abs(slopes - apart).max()), 0.0, 1e-3),
         "towards the outline it grows": bool(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
-        left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
-        left.axvline(3, color=INK)
-        for (walk, _), color in zip(walks, (BLUE, ORANGE), strict=True):
-            left.plot([-3, 3], walk[[0, 0], 1], color=color, linewidth=0.6)
-            for place in walk[:60]:
-                free = abs(float(scene(place[None])[0][0]))
-                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=color, linewidth=0.6))
-            left.plot(*walk[:, :2].T, ".", color=color, markersize=3)
-        left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
-        right.plot(y, slopes, color=BLUE)
-        right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
-        right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 3.2, 1, 2, width_ratios=(1.4, 1))
+    left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
+    left.axvline(3, color=INK)
+    for (walk, _), color in zip(walks, (BLUE, ORANGE), strict=True):
+        left.plot([-3, 3], walk[[0, 0], 1], color=color, linewidth=0.6)
+        for place in walk[:60]:
+            free = abs(float(scene(place[None])[0][0]))
+            left.add_patch(Circle(place[:2], free, fill=False, edgecolor=color, linewidth=0.6))
+        left.plot(*walk[:, :2].T, ".", color=color, markersize=3)
+    left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
+    right.plot(y, slopes, color=BLUE)
+    right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
+    right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
+    plain_axes(right)
     return figure, facts
 
 
@@ -238,28 +220,18 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         "from 256 to 4096 less than twice as many": (means[3] / means[1], 1.0, 2.0),
         "with 256 triangles about 25": (means[1], 22.0, 28.0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
-        figure.colorbar(drawn, ax=left, label="boxes asked for", shrink=0.8)
-        left.set(xticks=[], yticks=[])
-        right.loglog(sizes, sizes, color=GRAY, linewidth=1)
-        right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
-        right.annotate(
-            "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK, textcoords="offset points"
-        )
-        right.annotate(
-            "boxes of the tree",
-            (sizes[1], means[1]),
-            (-20, -16),
-            color=BLUE,
-            textcoords="offset points",
-        )
-        right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
-        right.set_xticks(sizes, [str(k) for k in sizes])
-        right.minorticks_off()
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
+    drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
+    figure.colorbar(drawn, ax=left, label="boxes asked for", shrink=0.8)
+    left.set(xticks=[], yticks=[])
+    right.loglog(sizes, sizes, color=GRAY, linewidth=1)
+    right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
+    note(right, "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK)
+    note(right, "boxes of the tree", (sizes[1], means[1]), (-20, -16), color=BLUE)
+    right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
+    right.set_xticks(sizes, [str(k) for k in sizes])
+    right.minorticks_off()
+    plain_axes(right)
     return figure, facts
 
 
@@ -346,13 +318,7 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
     return asked, found
 
 
-FIGURES = {
-    "fig1_far": fig1_far,
-    "fig2_edges": fig2_edges,
-    "fig3_glass": fig3_glass,
-    "fig4_march": fig4_march,
-    "fig5_tree": fig5_tree,
-}
+FIGURES = figures_of(fig1_far, fig2_edges, fig3_glass, fig4_march, fig5_tree)
 RED = {
     "fig1_far": "sphere_quadratic",
     "fig2_edges": "triangle_cramer",

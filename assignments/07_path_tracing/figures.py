@@ -6,11 +6,10 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 UP = np.array([0.0, 1.0, 0.0])
 GAMMA = 1 / 2.2
 
@@ -42,32 +41,16 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         "without the cosine right below the lamp": (float(no_cosine[0] / right[0]), 1.0, 1.1),
         "at 4 m twice as bright or more": (float(no_cosine[-1] / right[-1]), 2.0, 3.0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        axes.semilogy(aside, right, color=GRAY)
-        axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
-        axes.semilogy(aside, by_area, color=CRIMSON)
-        axes.semilogy(aside, no_cosine, color=ORANGE)
-        axes.annotate(
-            "density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON, textcoords="offset points"
-        )
-        axes.annotate(
-            "without the lamp's cosine",
-            (2.6, no_cosine[21]),
-            (0, 8),
-            color=ORANGE,
-            textcoords="offset points",
-        )
-        axes.annotate(
-            "yours, and Lambert's formula",
-            (1.2, right[10]),
-            (-60, -24),
-            color=BLUE,
-            textcoords="offset points",
-        )
-        axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.9)
+    axes.semilogy(aside, right, color=GRAY)
+    axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
+    axes.semilogy(aside, by_area, color=CRIMSON)
+    axes.semilogy(aside, no_cosine, color=ORANGE)
+    note(axes, "density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON)
+    note(axes, "without the lamp's cosine", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
+    note(axes, "yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE)
+    axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -120,29 +103,25 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
         "polished: the metal's mean": (means[2, 0] / means[1, 0], 0.8, 1.25),
         "rough: the lamps' mean": (means[2, 3] / means[0, 3], 0.8, 1.25),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-        axes = figure.subplots(2, 3, height_ratios=(1.3, 1))
-        for column, (name, p) in enumerate(
-            zip(("lamps alone", "metal alone", "both"), pictures, strict=True)
-        ):
-            shown = np.zeros(width * height)
-            shown[on] = p[:, :shown_ones].mean(axis=1)
-            shown[hit["thing"] == 4] = 1.5
-            gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
-            axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
-            axes[0, column].set(xticks=[], yticks=[], title=name)
-            for k, each in enumerate(roughness):  # the strip's name, where its front edge is seen
-                low = np.flatnonzero(on)[strip == k].max() // width
-                row = np.flatnonzero(on)[strip == k]
-                middle = np.median(row[row // width == low] % width)
-                axes[0, column].text(
-                    middle, low - 1, str(each), color="white", ha="center", fontsize=7
-                )
-            axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
-            axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
-            axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
-        axes[1, 0].set(ylabel="noise / brightness")
+    figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.3, 1))
+    for column, (name, p) in enumerate(
+        zip(("lamps alone", "metal alone", "both"), pictures, strict=True)
+    ):
+        shown = np.zeros(width * height)
+        shown[on] = p[:, :shown_ones].mean(axis=1)
+        shown[hit["thing"] == 4] = 1.5
+        gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
+        axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
+        axes[0, column].set(xticks=[], yticks=[], title=name)
+        for k, each in enumerate(roughness):  # the strip's name, where its front edge is seen
+            low = np.flatnonzero(on)[strip == k].max() // width
+            row = np.flatnonzero(on)[strip == k]
+            middle = np.median(row[row // width == low] % width)
+            axes[0, column].text(middle, low - 1, str(each), color="white", ha="center", fontsize=7)
+        axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
+        axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
+        axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
+    axes[1, 0].set(ylabel="noise / brightness")
     return figure, facts
 
 
@@ -178,18 +157,16 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
             abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.3), layout="constrained")
-        axes = figure.subplots(1, 4, width_ratios=(1, 1, 1, 1.4))
-        for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
-            shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
-            axes[k].imshow(shown)
-            axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
-        axes[3].plot(depths, right, color=GRAY)
-        axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
-        axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
-        axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
-        plain_axes(axes[3])
+    figure, axes = subplots(7.0, 2.3, 1, 4, width_ratios=(1, 1, 1, 1.4))
+    for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
+        shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
+        axes[k].imshow(shown)
+        axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
+    axes[3].plot(depths, right, color=GRAY)
+    axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
+    axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
+    axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
+    plain_axes(axes[3])
     return figure, facts
 
 
@@ -231,23 +208,19 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
         "dearer at depth 8": (float((prices[0] / prices[1])[2]), 1.1, 2.0),
         "about even at depth 12": (float((prices[0] / prices[1])[3]), 0.7, 1.4),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.4), layout="constrained")
-        axes = figure.subplots(1, 3)
-        for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
-            shift = 0.12 * (2 * k - 1)
-            axes[0].errorbar(
-                depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
-            )
-            axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
-            axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
-        axes[0].plot(depths, right, color=GRAY, zorder=0)
-        axes[1].legend(frameon=False)
-        for each, title in zip(
-            axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True
-        ):
-            each.set(xlabel="depth", title=title)
-            plain_axes(each)
+    figure, axes = subplots(7.0, 2.4, 1, 3)
+    for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
+        shift = 0.12 * (2 * k - 1)
+        axes[0].errorbar(
+            depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
+        )
+        axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
+        axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
+    axes[0].plot(depths, right, color=GRAY, zorder=0)
+    axes[1].legend(frameon=False)
+    for each, title in zip(axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True):
+        each.set(xlabel="depth", title=title)
+        plain_axes(each)
     return figure, facts
 
 
@@ -287,27 +260,19 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
         "own numbers settle at the truth": (float(tracks[0][-40:].mean()), 0.57, 0.63),
         "shared ones about a quarter too dark": (1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.8), layout="constrained")
-        left, side = figure.subplots(1, 2)
-        left.plot(values, right, color=GRAY)
-        left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
-        left.plot(values, wrong, "x", color=CRIMSON)
-        left.set(xlabel="roughness", title="derivative by roughness")
-        side.axhline(0.6, color=GRAY)
-        side.plot(tracks[0], color=BLUE, linewidth=1)
-        side.plot(tracks[1], color=CRIMSON, linewidth=1)
-        side.annotate(
-            "shared numbers",
-            (60, tracks[1][60]),
-            (10, -14),
-            color=CRIMSON,
-            textcoords="offset points",
-        )
-        side.annotate("own numbers", (70, 0.66), (0, 8), color=BLUE, textcoords="offset points")
-        side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
-        for each in (left, side):
-            plain_axes(each)
+    figure, (left, side) = subplots(7.0, 2.8, 1, 2)
+    left.plot(values, right, color=GRAY)
+    left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
+    left.plot(values, wrong, "x", color=CRIMSON)
+    left.set(xlabel="roughness", title="derivative by roughness")
+    side.axhline(0.6, color=GRAY)
+    side.plot(tracks[0], color=BLUE, linewidth=1)
+    side.plot(tracks[1], color=CRIMSON, linewidth=1)
+    note(side, "shared numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON)
+    note(side, "own numbers", (70, 0.66), (0, 8), color=BLUE)
+    side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
+    for each in (left, side):
+        plain_axes(each)
     return figure, facts
 
 
@@ -336,27 +301,26 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
         "roughness found within 0.02": (float(abs(found - exact)[3]), 0.0, 0.02),
         "the core as well": (float(np.abs(core - exact).max()), 0.0, 0.02),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-        above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
-        axes = above.subplots(1, 4)
-        for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
-            each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
-        for each, shown in zip(axes[2:], (mine, slope), strict=True):
-            each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
-        for each, name in zip(
-            axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
-        ):
-            each.set(xticks=[], yticks=[], title=name)
-        axis = below.subplots()
-        for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
-            axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
-            axis.plot(np.arange(1, 46), track[:, k], color=color)
-            axis.plot([46], [core[k]], "x", color=color)
-        for k, name in enumerate(("red", "green", "blue", "roughness")):
-            axis.annotate(name, (24, track[24, k]), (3, 4), textcoords="offset points")
-        axis.set(xlabel="step", ylim=(0, 1))
-        plain_axes(axis)
+    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
+    axes = above.subplots(1, 4)
+    for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
+        each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
+    for each, shown in zip(axes[2:], (mine, slope), strict=True):
+        each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
+    for each, name in zip(
+        axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
+    ):
+        each.set(xticks=[], yticks=[], title=name)
+    axis = below.subplots()
+    for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
+        axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
+        axis.plot(np.arange(1, 46), track[:, k], color=color)
+        axis.plot([46], [core[k]], "x", color=color)
+    for k, name in enumerate(("red", "green", "blue", "roughness")):
+        note(axis, name, (24, track[24, k]), (3, 4))
+    axis.set(xlabel="step", ylim=(0, 1))
+    plain_axes(axis)
     return figure, facts
 
 
@@ -471,14 +435,9 @@ def _apart(a: Array, b: Array) -> float:
     return float(np.linalg.norm(a - b) / np.linalg.norm(b))
 
 
-FIGURES = {
-    "fig1_measure": fig1_measure,
-    "fig2_strategies": fig2_strategies,
-    "fig3_depth": fig3_depth,
-    "fig4_roulette": fig4_roulette,
-    "fig5_gradient": fig5_gradient,
-    "fig6_recover": fig6_recover,
-}
+FIGURES = figures_of(
+    fig1_measure, fig2_strategies, fig3_depth, fig4_roulette, fig5_gradient, fig6_recover
+)
 RED = {
     "fig1_measure": "pdf_no_cosine",
     "fig2_strategies": "direct_weights_exchanged",

@@ -6,20 +6,10 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GRAY,
-    INK,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_color_map,
-)
+from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
 # The mistakes of figure 4, in the words of its caption.
 LEFT_OUT, ADDED, NO_STEP = "hidden part left out", "hidden part added", "without dt"
@@ -56,18 +46,16 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
             1e6,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.4), layout="constrained")
-        panels = figure.subplots(3, 1, sharex=True)
-        panels[0].bar(x, sigma, width=dt, color=GRAY)
-        panels[0].set(ylabel="σ  [1/m]")
-        panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
-        panels[1].set(ylabel="T in front", ylim=(0, 1.05))
-        panels[2].bar(x, w, width=dt, color=BLUE)
-        panels[2].set(ylabel="weight w", xlabel="distance from the eye [m]", xlim=(0, 6))
-        for axes in panels:
-            plain_axes(axes)
-            axes.set_axisbelow(True)
+    figure, panels = subplots(7.0, 4.4, 3, 1, sharex=True)
+    panels[0].bar(x, sigma, width=dt, color=GRAY)
+    panels[0].set(ylabel="σ  [1/m]")
+    panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
+    panels[1].set(ylabel="T in front", ylim=(0, 1.05))
+    panels[2].bar(x, w, width=dt, color=BLUE)
+    panels[2].set(ylabel="weight w", xlabel="distance from the eye [m]", xlim=(0, 6))
+    for axes in panels:
+        plain_axes(axes)
+        axes.set_axisbelow(True)
     return figure, facts
 
 
@@ -113,26 +101,22 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "without dt the error doubles": (float(np.abs(slopes[names[3]] - 1).max()), 0, 0.1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.1), layout="constrained")
-        axes = figure.subplots()
-        for name, (_, color, dashes, mark) in ways.items():
-            axes.loglog(
-                counts, errors[name], color=color, linestyle=dashes, marker=mark, markersize=4
-            )
-            lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
-            axes.annotate(
-                name,
-                (counts[-1], errors[name][-1]),
-                (7, lift),
-                textcoords="offset points",
-                va="center",
-                color=INK if color == GRAY else color,
-            )
-        axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
-        axes.set_xticks(counts, [str(n) for n in counts])
-        axes.minorticks_off()
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.1)
+    for name, (_, color, dashes, mark) in ways.items():
+        axes.loglog(counts, errors[name], color=color, linestyle=dashes, marker=mark, markersize=4)
+        lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
+        note(
+            axes,
+            name,
+            (counts[-1], errors[name][-1]),
+            (7, lift),
+            va="center",
+            color=INK if color == GRAY else color,
+        )
+    axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
+    axes.set_xticks(counts, [str(n) for n in counts])
+    axes.minorticks_off()
+    plain_axes(axes)
     return figure, facts
 
 
@@ -171,28 +155,26 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
             1 + 1e-9,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-        axes = figure.subplots()
-        axes.axvspan(*_reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
-        axes.axvspan(*_reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
-        axes.axhline(0, color=FRAME, linewidth=0.8)
-        axes.plot(x, own, color=BLUE, linestyle="--")
-        axes.plot(x, hidden, color=ORANGE, linestyle="-.")
-        axes.plot(x, d_sigma, color=INK)
-        axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
-        for text, place, color in (
-            ("shows more of itself", (4.1, 0.035), BLUE),
-            ("hides what is behind", (4.1, -0.038), ORANGE),
-            ("sum; dots: differences", (1.6, -0.034), INK),
-        ):
-            axes.annotate(text, place, color=color, fontsize=8)
-        axes.set(ylim=(-0.07, 0.07))
-        low, high = axes.get_ylim()
-        for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
-            axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
-        axes.set(xlabel="distance from the eye [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.0)
+    axes.axvspan(*_reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
+    axes.axvspan(*_reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
+    axes.axhline(0, color=FRAME, linewidth=0.8)
+    axes.plot(x, own, color=BLUE, linestyle="--")
+    axes.plot(x, hidden, color=ORANGE, linestyle="-.")
+    axes.plot(x, d_sigma, color=INK)
+    axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
+    for text, place, color in (
+        ("shows more of itself", (4.1, 0.035), BLUE),
+        ("hides what is behind", (4.1, -0.038), ORANGE),
+        ("sum; dots: differences", (1.6, -0.034), INK),
+    ):
+        axes.annotate(text, place, color=color, fontsize=8)
+    axes.set(ylim=(-0.07, 0.07))
+    low, high = axes.get_ylim()
+    for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
+        axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
+    axes.set(xlabel="distance from the eye [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -224,22 +206,20 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
         "and are wrong by more than 10 %": (min(error[k] for k in subtle), 0.1, 20),
         "without dt the cosine is 1": (cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        axes = figure.subplots()
-        names = list(found)
-        values = [100 * error[name] for name in names]
-        axes.barh(names, values, color=[CRIMSON] * 2 + [BLUE] * 4, height=0.62)
-        for row, name in enumerate(names):
-            text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
-            axes.annotate(text, (values[row], row), (5, 0), textcoords="offset points", va="center")
-        axes.set(xscale="log", xlim=(2, 40000), xlabel="distance from the right one [%]")
-        axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
-        axes.set_axisbelow(True)
-        axes.minorticks_off()
-        axes.invert_yaxis()
-        plain_axes(axes)
-        axes.grid(visible=False, axis="y")
+    figure, axes = subplots(7.0, 2.6)
+    names = list(found)
+    values = [100 * error[name] for name in names]
+    axes.barh(names, values, color=[CRIMSON] * 2 + [BLUE] * 4, height=0.62)
+    for row, name in enumerate(names):
+        text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
+        note(axes, text, (values[row], row), (5, 0), va="center")
+    axes.set(xscale="log", xlim=(2, 40000), xlabel="distance from the right one [%]")
+    axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
+    axes.set_axisbelow(True)
+    axes.minorticks_off()
+    axes.invert_yaxis()
+    plain_axes(axes)
+    axes.grid(visible=False, axis="y")
     return figure, facts
 
 
@@ -262,65 +242,50 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
         "it misses": bool(near[1] == 0 and far[1] == 0),
     }
     colors = (BLUE, CRIMSON)
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
-        left.fill([1, 4, 4, 1], [1, 1, 3, 3], color=FRAME, alpha=0.25, linewidth=0)
-        for x in (1, 4):
-            left.axvline(x, color=FRAME, linewidth=0.8, linestyle=":")
-        for y in (1, 3):
-            left.axhline(y, color=FRAME, linewidth=0.8, linestyle=":")
-        for r in (0, 1):
-            o, d = origins[r, :2], directions[r, :2]
-            line = o + np.array([0.0, 5.2])[:, None] * d
-            left.plot(*line.T, color=colors[r], linewidth=1.0)
-            if far[r] > near[r]:
-                inside = o + np.array([near[r], far[r]])[:, None] * d
-                left.plot(*inside.T, color=colors[r], linewidth=3.5, solid_capstyle="butt")
-            for a, mark in ((0, "o"), (1, "s")):
-                at = o + np.array(planes[r][a])[:, None] * d
-                left.plot(*at.T, mark, color=colors[r], ms=5, mfc="white")
-            name, place = (("first", (4.25, 2.45)), ("second", (1.25, 3.6)))[r]
-            left.annotate(name, place, color=colors[r])
-        left.set(xlim=(0, 5), ylim=(0, 4), xlabel="x", ylabel="y", aspect="equal")
-        left.set(xticks=range(6), yticks=range(5))
-        rows = 0
-        for r in (0, 1):
-            for a, mark in ((0, "o"), (1, "s")):
-                right.plot(
-                    planes[r][a],
-                    [rows, rows],
-                    color=colors[r],
-                    marker=mark,
-                    markerfacecolor="white",
-                    markersize=5,
-                )
-                said = "between the " + "xy"[a] + " planes"
-                right.annotate(
-                    said, (planes[r][a][0], rows), (0, 7), textcoords="offset points", fontsize=7.5
-                )
-                rows += 1
-            if far[r] > near[r]:
-                right.plot(
-                    [near[r], far[r]],
-                    [rows, rows],
-                    color=colors[r],
-                    linewidth=4,
-                    solid_capstyle="butt",
-                )
-            said = "in the box" if far[r] > near[r] else "never between all: misses"
-            start = near[r] if far[r] > near[r] else 0.3
-            right.annotate(
-                said,
-                (start, rows),
-                (0, 6),
-                textcoords="offset points",
-                fontsize=7.5,
+    figure, (left, right) = subplots(7.0, 2.6, 1, 2, width_ratios=(1.1, 1))
+    left.fill([1, 4, 4, 1], [1, 1, 3, 3], color=FRAME, alpha=0.25, linewidth=0)
+    for x in (1, 4):
+        left.axvline(x, color=FRAME, linewidth=0.8, linestyle=":")
+    for y in (1, 3):
+        left.axhline(y, color=FRAME, linewidth=0.8, linestyle=":")
+    for r in (0, 1):
+        o, d = origins[r, :2], directions[r, :2]
+        line = o + np.array([0.0, 5.2])[:, None] * d
+        left.plot(*line.T, color=colors[r], linewidth=1.0)
+        if far[r] > near[r]:
+            inside = o + np.array([near[r], far[r]])[:, None] * d
+            left.plot(*inside.T, color=colors[r], linewidth=3.5, solid_capstyle="butt")
+        for a, mark in ((0, "o"), (1, "s")):
+            at = o + np.array(planes[r][a])[:, None] * d
+            left.plot(*at.T, mark, color=colors[r], ms=5, mfc="white")
+        name, place = (("first", (4.25, 2.45)), ("second", (1.25, 3.6)))[r]
+        left.annotate(name, place, color=colors[r])
+    left.set(xlim=(0, 5), ylim=(0, 4), xlabel="x", ylabel="y", aspect="equal")
+    left.set(xticks=range(6), yticks=range(5))
+    rows = 0
+    for r in (0, 1):
+        for a, mark in ((0, "o"), (1, "s")):
+            right.plot(
+                planes[r][a],
+                [rows, rows],
                 color=colors[r],
+                marker=mark,
+                markerfacecolor="white",
+                markersize=5,
             )
+            said = "between the " + "xy"[a] + " planes"
+            note(right, said, (planes[r][a][0], rows), (0, 7), fontsize=7.5)
             rows += 1
-        right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
-        right.spines[["top", "right", "left"]].set_visible(False)
+        if far[r] > near[r]:
+            right.plot(
+                [near[r], far[r]], [rows, rows], color=colors[r], linewidth=4, solid_capstyle="butt"
+            )
+        said = "in the box" if far[r] > near[r] else "never between all: misses"
+        start = near[r] if far[r] > near[r] else 0.3
+        note(right, said, (start, rows), (0, 6), fontsize=7.5, color=colors[r])
+        rows += 1
+    right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
+    right.spines[["top", "right", "left"]].set_visible(False)
     return figure, facts
 
 
@@ -361,24 +326,22 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "photograph and guess differ": (float(np.abs(seen - photograph).max()), 0.3, 1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.35), layout="constrained")
-        panels = figure.subplots(1, 3)
-        for axes, values, title in zip(
-            panels, (photograph, seen), ("photograph", "guess"), strict=False
-        ):
-            picture = np.clip(values, 0, 1).reshape(pixels, pixels, 3) ** (1 / 2.2)
-            axes.imshow(picture, interpolation="nearest")
-            axes.set_title(title)
-        top = float(np.abs(columns).max())
-        image = panels[2].imshow(
-            columns / top, cmap=signed_color_map(), vmin=-1, vmax=1, interpolation="nearest"
-        )
-        panels[2].set_title("∂L/∂σ, summed along z")
-        for axes in panels:
-            axes.set(xticks=[], yticks=[])
-        bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
-        bar.set_ticklabels(["−1\nadd σ", "0", "take σ\naway  1"])
+    figure, panels = subplots(7.0, 2.35, 1, 3)
+    for axes, values, title in zip(
+        panels, (photograph, seen), ("photograph", "guess"), strict=False
+    ):
+        picture = np.clip(values, 0, 1).reshape(pixels, pixels, 3) ** (1 / 2.2)
+        axes.imshow(picture, interpolation="nearest")
+        axes.set_title(title)
+    top = float(np.abs(columns).max())
+    image = panels[2].imshow(
+        columns / top, cmap=signed_color_map(), vmin=-1, vmax=1, interpolation="nearest"
+    )
+    panels[2].set_title("∂L/∂σ, summed along z")
+    for axes in panels:
+        axes.set(xticks=[], yticks=[])
+    bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
+    bar.set_ticklabels(["−1\nadd σ", "0", "take σ\naway  1"])
     return figure, facts
 
 
@@ -489,14 +452,7 @@ def _reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:
     return float(x[mask].min() - dt[0] / 2), float(x[mask].max() + dt[0] / 2)
 
 
-FIGURES = {
-    "fig1_ray": fig1_ray,
-    "fig2_order": fig2_order,
-    "fig3_adjoint": fig3_adjoint,
-    "fig4_wrong": fig4_wrong,
-    "fig5_box": fig5_box,
-    "fig6_view": fig6_view,
-}
+FIGURES = figures_of(fig1_ray, fig2_order, fig3_adjoint, fig4_wrong, fig5_box, fig6_view)
 RED = {
     "fig1_ray": "inclusive",
     "fig2_order": "riemann",

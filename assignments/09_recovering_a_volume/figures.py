@@ -8,18 +8,9 @@ from types import ModuleType
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from photograd_course.viz.style import (
-    BLUE,
-    GRAY,
-    INK,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_color_map,
-)
+from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 Views = dict[str, Array | float]
 BACKGROUND = np.array([0.04, 0.05, 0.08])
 LOW, HIGH = np.full(3, -1.0), np.full(3, 1.0)
@@ -52,23 +43,21 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
             size / 2,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-        axes = figure.subplots()
-        axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GRAY, alpha=0.25, linewidth=0)
-        for ray in range(size):
-            ends = origins[ray] + np.array([0, 6.0])[:, None] * directions[ray]
-            axes.plot(ends[:, 0], ends[:, 2], color=BLUE, linewidth=0.8)
-        axes.plot(dots[..., 0].ravel(), dots[..., 2].ravel(), "o", color=BLUE, markersize=3)
-        for k, place in enumerate(places):
-            side = _looking(place)[:3, 0]
-            wing = place * 0.87 + np.array([-0.34, 0.34])[:, None] * side
-            outline = np.stack([place, wing[0], wing[1], place])
-            axes.plot(outline[:, 0], outline[:, 2], color=ORANGE if k == 0 else INK, linewidth=1.2)
-        axes.annotate("box", (-0.92, 0.68), fontsize=8)
-        # x to the right and y towards the reader: a right-handed z goes down.
-        axes.set(xlim=(-5.6, 5.6), ylim=(4.1, -4.1), xlabel="x [m]", ylabel="z [m]", aspect="equal")
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.6)
+    axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GRAY, alpha=0.25, linewidth=0)
+    for ray in range(size):
+        ends = origins[ray] + np.array([0, 6.0])[:, None] * directions[ray]
+        axes.plot(ends[:, 0], ends[:, 2], color=BLUE, linewidth=0.8)
+    axes.plot(dots[..., 0].ravel(), dots[..., 2].ravel(), "o", color=BLUE, markersize=3)
+    for k, place in enumerate(places):
+        side = _looking(place)[:3, 0]
+        wing = place * 0.87 + np.array([-0.34, 0.34])[:, None] * side
+        outline = np.stack([place, wing[0], wing[1], place])
+        axes.plot(outline[:, 0], outline[:, 2], color=ORANGE if k == 0 else INK, linewidth=1.2)
+    axes.annotate("box", (-0.92, 0.68), fontsize=8)
+    # x to the right and y towards the reader: a right-handed z goes down.
+    axes.set(xlim=(-5.6, 5.6), ylim=(4.1, -4.1), xlabel="x [m]", ylabel="z [m]", aspect="equal")
+    plain_axes(axes)
     drawn = axes.yaxis_inverted() and not axes.xaxis_inverted()
     facts["it is the view from above, not from below"] = bool(drawn)
     return figure, facts
@@ -93,28 +82,26 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
     }
     root = np.sign(slope) * np.sqrt(np.abs(slope) / np.abs(slope).max())
     pictures = np.asarray(views["pictures"])
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        panels = figure.subplots(1, 4)
-        _show(panels[0], pictures[2], "one of six photographs")
-        panels[1].imshow(scene[:, :, where, 3].T, cmap="gray_r", origin="lower")
-        panels[1].set_title("true density, slice")
-        for axes, values, title in (
-            (panels[2], root, "∂L/∂σ from fog (roots)"),
-            (panels[3], signs, "sign map"),
-        ):
-            axes.imshow(
-                values[:, :, where].T,
-                cmap=signed_color_map(),
-                vmin=-1,
-                vmax=1,
-                origin="lower",
-                interpolation="nearest",
-            )
-            axes.contour(scene[:, :, where, 3].T, levels=[5], colors=INK, linewidths=0.8)
-            axes.set_title(title)
-        for axes in panels:
-            axes.set(xticks=[], yticks=[])
+    figure, panels = subplots(7.0, 2.1, 1, 4)
+    _show(panels[0], pictures[2], "one of six photographs")
+    panels[1].imshow(scene[:, :, where, 3].T, cmap="gray_r", origin="lower")
+    panels[1].set_title("true density, slice")
+    for axes, values, title in (
+        (panels[2], root, "∂L/∂σ from fog (roots)"),
+        (panels[3], signs, "sign map"),
+    ):
+        axes.imshow(
+            values[:, :, where].T,
+            cmap=signed_color_map(),
+            vmin=-1,
+            vmax=1,
+            origin="lower",
+            interpolation="nearest",
+        )
+        axes.contour(scene[:, :, where, 3].T, levels=[5], colors=INK, linewidths=0.8)
+        axes.set_title(title)
+    for axes in panels:
+        axes.set(xticks=[], yticks=[])
     return figure, facts
 
 
@@ -139,20 +126,18 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
             all(after[k] > start[k] + 0.25 for k in range(2, 7))
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        axes = figure.subplots()
-        axes.bar(range(7), [100 * s for s in start], color=BLUE, width=0.6, label="from fog")
-        axes.plot(range(7), [100 * s for s in after], "o", color=ORANGE, label="after twelve steps")
-        axes.set(
-            xlabel="photographs that see a ball along a ray through the voxel",
-            ylabel="positive [%]",
-            ylim=(0, 125),
-            xticks=range(7),
-        )
-        axes.legend(loc="upper right", ncols=2)
-        axes.set_axisbelow(True)
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.7)
+    axes.bar(range(7), [100 * s for s in start], color=BLUE, width=0.6, label="from fog")
+    axes.plot(range(7), [100 * s for s in after], "o", color=ORANGE, label="after twelve steps")
+    axes.set(
+        xlabel="photographs that see a ball along a ray through the voxel",
+        ylabel="positive [%]",
+        ylim=(0, 125),
+        xticks=range(7),
+    )
+    axes.legend(loc="upper right", ncols=2)
+    axes.set_axisbelow(True)
+    plain_axes(axes)
     return figure, facts
 
 
@@ -174,37 +159,29 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
         "photographs are matched better than unseen views": bool(own[-1] > new[-1]),
     }
     large = _large(module, scene, unseen)
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.6), layout="constrained")
-        grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.25))
-        shown = [("truth", np.asarray(large["pictures"])[0])]
-        for steps in (1, 8, 50):
-            found = _rendered(module, right[marks.index(steps)], large).reshape(40, 40, 3)
-            shown.append((f"after {steps} step{'s' * (steps > 1)}", found))
-        for k, (title, picture) in enumerate(shown):
-            _show(figure.add_subplot(grid[0, k]), picture, title)
-        axes = figure.add_subplot(grid[1, :])
-        axes.plot(marks, own, "o--", color=BLUE, markersize=4)
-        axes.plot(marks, new, "o-", color=BLUE, markersize=4)
-        axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
-        axes.annotate(
-            "right adjoint",
-            (marks[-1], new[-1]),
-            (-4, -16),
-            textcoords="offset points",
-            color=BLUE,
-            ha="right",
-        )
-        axes.annotate(
-            "what a step hides left out",
-            (marks[-1], bad[-1]),
-            (-4, -24),
-            textcoords="offset points",
-            color=ORANGE,
-            ha="right",
-        )
-        axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
-        plain_axes(axes)
+    figure = Figure(figsize=(7.0, 4.6), layout="constrained")
+    grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.25))
+    shown = [("truth", np.asarray(large["pictures"])[0])]
+    for steps in (1, 8, 50):
+        found = _rendered(module, right[marks.index(steps)], large).reshape(40, 40, 3)
+        shown.append((f"after {steps} step{'s' * (steps > 1)}", found))
+    for k, (title, picture) in enumerate(shown):
+        _show(figure.add_subplot(grid[0, k]), picture, title)
+    axes = figure.add_subplot(grid[1, :])
+    axes.plot(marks, own, "o--", color=BLUE, markersize=4)
+    axes.plot(marks, new, "o-", color=BLUE, markersize=4)
+    axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
+    note(axes, "right adjoint", (marks[-1], new[-1]), (-4, -16), color=BLUE, ha="right")
+    note(
+        axes,
+        "what a step hides left out",
+        (marks[-1], bad[-1]),
+        (-4, -24),
+        color=ORANGE,
+        ha="right",
+    )
+    axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -229,10 +206,9 @@ def fig5_tv(module: ModuleType) -> tuple[Figure, Facts]:
     for k in (0, 1, 2):
         picture = _rendered(module, found[k], large).reshape(40, 40, 3)
         shown.append((f"TV = {weights[k]:g}: {scores[k]:.1f} dB", picture))
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        for axes, (title, picture) in zip(figure.subplots(1, 4), shown, strict=True):
-            _show(axes, picture, title)
+    figure = Figure(figsize=(7.0, 2.1), layout="constrained")
+    for axes, (title, picture) in zip(figure.subplots(1, 4), shown, strict=True):
+        _show(axes, picture, title)
     return figure, facts
 
 
@@ -419,13 +395,7 @@ def _show(axes: Axes, picture: Array, title: str) -> None:
     axes.set_title(title)
 
 
-FIGURES = {
-    "fig1_cameras": fig1_cameras,
-    "fig2_signs": fig2_signs,
-    "fig3_why": fig3_why,
-    "fig4_fit": fig4_fit,
-    "fig5_tv": fig5_tv,
-}
+FIGURES = figures_of(fig1_cameras, fig2_signs, fig3_why, fig4_fit, fig5_tv)
 RED = {
     "fig1_cameras": "rays_corner",
     "fig2_signs": "map_upside_down",

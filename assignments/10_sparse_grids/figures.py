@@ -7,19 +7,9 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from photograd_course.viz.style import (
-    BLUE,
-    GRAY,
-    INK,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_color_map,
-)
+from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 
 
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
@@ -43,27 +33,21 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
         "bright: the loss falls at first": bool(curves[0.9][1] < curves[0.9][0]),
         "dim: it rises": bool((np.diff(curves[0.3]) > 0).all()),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.8), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.axhline(0, color=GRAY, linewidth=0.8)
-        left.axvline(behind, color=GRAY, linewidth=0.8, linestyle="--")
-        left.plot(colors, slopes, color=BLUE)
-        left.plot(colors[::2], apart[::2], "o", color=INK, markersize=3)
-        left.annotate("seen behind", (behind, slopes.min()), (4, 0), textcoords="offset points")
-        left.set(xlabel="color that it is given", ylabel="∂L/∂σ at σ = 0")
-        for c, color in ((0.9, BLUE), (0.3, ORANGE)):
-            right.plot(sigma, curves[c], color=color)
-            right.annotate(
-                f"color {c}",
-                (sigma[40], curves[c][40]),
-                (0, 6 if c > 0.5 else -14),
-                textcoords="offset points",
-                color=color,
-            )
-        right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
-        for axes in (left, right):
-            plain_axes(axes)
+    figure, (left, right) = subplots(7.0, 2.8, 1, 2)
+    left.axhline(0, color=GRAY, linewidth=0.8)
+    left.axvline(behind, color=GRAY, linewidth=0.8, linestyle="--")
+    left.plot(colors, slopes, color=BLUE)
+    left.plot(colors[::2], apart[::2], "o", color=INK, markersize=3)
+    note(left, "seen behind", (behind, slopes.min()), (4, 0))
+    left.set(xlabel="color that it is given", ylabel="∂L/∂σ at σ = 0")
+    for c, color in ((0.9, BLUE), (0.3, ORANGE)):
+        right.plot(sigma, curves[c], color=color)
+        note(
+            right, f"color {c}", (sigma[40], curves[c][40]), (0, 6 if c > 0.5 else -14), color=color
+        )
+    right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
+    for axes in (left, right):
+        plain_axes(axes)
     return figure, facts
 
 
@@ -88,36 +72,27 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
         "at 32 less than a fifth of the cells": (shells[-1] / n**3, 0.01, 0.2),
         "two halves are eight leaves": bool(half == 9),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        for low, side, full in _leaves_in_slice(module, tree, n, n // 2):
-            left.add_patch(
-                Rectangle(
-                    low,
-                    side,
-                    side,
-                    facecolor=ORANGE if full else "white",
-                    edgecolor=INK,
-                    linewidth=0.4,
-                )
+    figure, (left, right) = subplots(7.0, 3.3, 1, 2)
+    for low, side, full in _leaves_in_slice(module, tree, n, n // 2):
+        left.add_patch(
+            Rectangle(
+                low, side, side, facecolor=ORANGE if full else "white", edgecolor=INK, linewidth=0.4
             )
-        left.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
-        right.loglog(sizes, sizes**3.0, color=GRAY, marker="^", markersize=4)
-        right.loglog(sizes, shells, color=ORANGE, marker="o", markersize=4)
-        right.loglog(sizes, ones, color=BLUE, marker="s", markersize=4)
-        for y, text, color in (
-            (n**3.0, "cells", INK),
-            (shells[-1], "nodes, shell", ORANGE),
-            (ones[-1], "nodes, one cell", BLUE),
-        ):
-            right.annotate(
-                text, (n, y), (5, 0), textcoords="offset points", va="center", color=color
-            )
-        right.set(xlabel="cells along a side", xlim=(3.5, 170))
-        right.set_xticks(sizes, [str(k) for k in sizes])
-        right.minorticks_off()
-        plain_axes(right)
+        )
+    left.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
+    right.loglog(sizes, sizes**3.0, color=GRAY, marker="^", markersize=4)
+    right.loglog(sizes, shells, color=ORANGE, marker="o", markersize=4)
+    right.loglog(sizes, ones, color=BLUE, marker="s", markersize=4)
+    for y, text, color in (
+        (n**3.0, "cells", INK),
+        (shells[-1], "nodes, shell", ORANGE),
+        (ones[-1], "nodes, one cell", BLUE),
+    ):
+        note(right, text, (n, y), (5, 0), va="center", color=color)
+    right.set(xlabel="cells along a side", xlim=(3.5, 170))
+    right.set_xticks(sizes, [str(k) for k in sizes])
+    right.minorticks_off()
+    plain_axes(right)
     return figure, facts
 
 
@@ -152,32 +127,30 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "fewer questions than a third of the samples": (len(questions) / right.size, 0.01, 1 / 3),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.1), layout="constrained")
-        axes = figure.subplots()
-        for low, side, is_full in _leaves_in_slice(module, tree, n, n // 2):
-            axes.add_patch(
-                Rectangle(
-                    low,
-                    side,
-                    side,
-                    facecolor="#f6dcc3" if is_full else "white",
-                    edgecolor=GRAY,
-                    linewidth=0.4,
-                )
+    figure, axes = subplots(7.0, 4.1)
+    for low, side, is_full in _leaves_in_slice(module, tree, n, n // 2):
+        axes.add_patch(
+            Rectangle(
+                low,
+                side,
+                side,
+                facecolor="#f6dcc3" if is_full else "white",
+                edgecolor=GRAY,
+                linewidth=0.4,
             )
-        for r in range(4):
-            axes.plot(*places[r, :, :2].T, ".", color=GRAY, markersize=2.5)
-            axes.plot(*places[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
-        axes.plot(
-            *questions[:, :2].T,
-            "o",
-            markerfacecolor="none",
-            markeredgecolor=BLUE,
-            markersize=7,
-            linestyle="none",
         )
-        axes.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
+    for r in range(4):
+        axes.plot(*places[r, :, :2].T, ".", color=GRAY, markersize=2.5)
+        axes.plot(*places[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
+    axes.plot(
+        *questions[:, :2].T,
+        "o",
+        markerfacecolor="none",
+        markeredgecolor=BLUE,
+        markersize=7,
+        linestyle="none",
+    )
+    axes.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
     return figure, facts
 
 
@@ -207,29 +180,18 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
         "half full: a miss looks at less than 3": (float(missing[2]), 1.0, 3.0),
         "nine tenths full: at more than 40": (float(missing[5]), 40.0, 200.0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        x = np.linspace(0.02, 0.92, 90)
-        axes.semilogy(x, (1 + 1 / (1 - x) ** 2) / 2, color=ORANGE, linewidth=1)
-        axes.semilogy(x, (1 + 1 / (1 - x)) / 2, color=BLUE, linewidth=1)
-        axes.semilogy(loads, missing, "s", color=ORANGE, markersize=5)
-        axes.semilogy(loads, found, "o", color=BLUE, markersize=5)
-        axes.annotate(
-            "not in the table",
-            (0.9, missing[-1]),
-            (-8, 8),
-            ha="right",
-            textcoords="offset points",
-            color=ORANGE,
-        )
-        axes.annotate(
-            "in the table", (0.9, found[-1]), (8, -3), textcoords="offset points", color=BLUE
-        )
-        axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
-        axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
-        axes.minorticks_off()
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.9)
+    x = np.linspace(0.02, 0.92, 90)
+    axes.semilogy(x, (1 + 1 / (1 - x) ** 2) / 2, color=ORANGE, linewidth=1)
+    axes.semilogy(x, (1 + 1 / (1 - x)) / 2, color=BLUE, linewidth=1)
+    axes.semilogy(loads, missing, "s", color=ORANGE, markersize=5)
+    axes.semilogy(loads, found, "o", color=BLUE, markersize=5)
+    note(axes, "not in the table", (0.9, missing[-1]), (-8, 8), ha="right", color=ORANGE)
+    note(axes, "in the table", (0.9, found[-1]), (8, -3), color=BLUE)
+    axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
+    axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
+    axes.minorticks_off()
+    plain_axes(axes)
     return figure, facts
 
 
@@ -280,23 +242,21 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "black: less than half of it": (float((maps[1][ring] < 0).mean()), 0.0, 0.5),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        panels = figure.subplots(1, 3)
-        own = np.zeros(n**3)
-        own[at] = d_kept[:, 3]
-        # Roots, so that the small ones show as well.
-        ends = [np.sign(each) * np.sqrt(np.abs(each)) for each in (own, *maps)]
-        end = max(float(np.abs(ends[1][far]).max()), 1e-300)
-        titles = ("voxels that exist", "all, the new ones bright", "all, the new ones black")
-        for axes, flat, title in zip(panels, ends, titles, strict=True):
-            slab = flat.reshape(n, n, n)[:, :, n // 2]
-            axes.imshow(slab.T, origin="lower", cmap=signed_color_map(), vmin=-end, vmax=end)
-            axes.set(xticks=[], yticks=[], title=title)
-        absent = np.ones((n, n, n), bool)
-        absent[tuple(some.T)] = False
-        nothing = np.ma.masked_where(~absent[:, :, n // 2].T, np.ones((n, n)))
-        panels[0].imshow(nothing, origin="lower", cmap="Greys", vmin=0, vmax=6)
+    figure, panels = subplots(7.0, 2.6, 1, 3)
+    own = np.zeros(n**3)
+    own[at] = d_kept[:, 3]
+    # Roots, so that the small ones show as well.
+    ends = [np.sign(each) * np.sqrt(np.abs(each)) for each in (own, *maps)]
+    end = max(float(np.abs(ends[1][far]).max()), 1e-300)
+    titles = ("voxels that exist", "all, the new ones bright", "all, the new ones black")
+    for axes, flat, title in zip(panels, ends, titles, strict=True):
+        slab = flat.reshape(n, n, n)[:, :, n // 2]
+        axes.imshow(slab.T, origin="lower", cmap=signed_color_map(), vmin=-end, vmax=end)
+        axes.set(xticks=[], yticks=[], title=title)
+    absent = np.ones((n, n, n), bool)
+    absent[tuple(some.T)] = False
+    nothing = np.ma.masked_where(~absent[:, :, n // 2].T, np.ones((n, n)))
+    panels[0].imshow(nothing, origin="lower", cmap="Greys", vmin=0, vmax=6)
     return figure, facts
 
 
@@ -330,42 +290,33 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         "the later it is pruned, the less is lost": bool((np.diff(gap) < 0).all()),
     }
     one = slice(1600, 3200)
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.6), layout="constrained")
-        grid = figure.add_gridspec(2, 3, height_ratios=(1.1, 1))
-        view = shown[:, one]
-        pictures = (
-            ("truth", module.render(values, _samples(module, 16, voxels, view))),
-            ("pruned every 3 steps", _picture(module, n, kept[0, 3], view)),
-            ("pruned and grown", _picture(module, n, kept[1, 3], view)),
-        )
-        for k, (title, colors) in enumerate(pictures):
-            axes = figure.add_subplot(grid[0, k])
-            axes.imshow(np.clip(colors, 0, 1).reshape(40, 40, 3) ** (1 / 2.2))
-            axes.set(xticks=[], yticks=[], title=title)
-        axes = figure.add_subplot(grid[1, :])
-        axes.axhline(dense, color=GRAY, linestyle="--", linewidth=1)
-        axes.annotate(
-            "all voxels, never pruned", (after[0], dense), (30, -12), textcoords="offset points"
-        )
-        for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
-            axes.plot(after, scores[grow], color=color, marker="o", markersize=4)
-            axes.annotate(
-                name,
-                (after[-1], scores[grow][-1]),
-                (8, -3),
-                color=color,
-                textcoords="offset points",
-            )
-        axes.set(
-            xscale="log",
-            xlabel="steps before each pruning (24 in all)",
-            ylabel="PSNR of new views [dB]",
-            xlim=(2.7, 22),
-        )
-        axes.set_xticks(after, [str(k) for k in after])
-        axes.minorticks_off()
-        plain_axes(axes)
+    figure = Figure(figsize=(7.0, 4.6), layout="constrained")
+    grid = figure.add_gridspec(2, 3, height_ratios=(1.1, 1))
+    view = shown[:, one]
+    pictures = (
+        ("truth", module.render(values, _samples(module, 16, voxels, view))),
+        ("pruned every 3 steps", _picture(module, n, kept[0, 3], view)),
+        ("pruned and grown", _picture(module, n, kept[1, 3], view)),
+    )
+    for k, (title, colors) in enumerate(pictures):
+        axes = figure.add_subplot(grid[0, k])
+        axes.imshow(np.clip(colors, 0, 1).reshape(40, 40, 3) ** (1 / 2.2))
+        axes.set(xticks=[], yticks=[], title=title)
+    axes = figure.add_subplot(grid[1, :])
+    axes.axhline(dense, color=GRAY, linestyle="--", linewidth=1)
+    note(axes, "all voxels, never pruned", (after[0], dense), (30, -12))
+    for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
+        axes.plot(after, scores[grow], color=color, marker="o", markersize=4)
+        note(axes, name, (after[-1], scores[grow][-1]), (8, -3), color=color)
+    axes.set(
+        xscale="log",
+        xlabel="steps before each pruning (24 in all)",
+        ylabel="PSNR of new views [dB]",
+        xlim=(2.7, 22),
+    )
+    axes.set_xticks(after, [str(k) for k in after])
+    axes.minorticks_off()
+    plain_axes(axes)
     return figure, facts
 
 
@@ -480,14 +431,7 @@ def _decibels(a: Array, b: Array) -> float:
     return float(-10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30)))
 
 
-FIGURES = {
-    "fig1_absent": fig1_absent,
-    "fig2_octree": fig2_octree,
-    "fig3_skip": fig3_skip,
-    "fig4_hash": fig4_hash,
-    "fig5_lost": fig5_lost,
-    "fig6_topology": fig6_topology,
-}
+FIGURES = figures_of(fig1_absent, fig2_octree, fig3_skip, fig4_hash, fig5_lost, fig6_topology)
 RED = {
     "fig1_absent": "back_without_g",
     "fig2_octree": "octree_empty_cut",

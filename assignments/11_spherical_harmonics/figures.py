@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 
@@ -32,17 +33,16 @@ def fig1_harmonics(module):
         ),
         "all but the first have mean zero": (float(np.abs(weights @ there)[1:].max()), 0, 1e-12),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.1))
-        top = float(np.abs(Y).max())
-        for ell in range(4):
-            for m in range(-ell, ell + 1):
-                axes = figure.add_axes((0.075 + (m + 3) * 0.128, 0.745 - ell * 0.235, 0.122, 0.205))
-                image = _show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
-                axes.set_title(f"m = {m}".replace("-", "−"), fontsize=7.5, pad=1.5)
-            figure.text(0.015, 0.845 - ell * 0.235, f"l = {ell}", fontsize=9)
-        bar = figure.add_axes((0.86, 0.75, 0.015, 0.2))
-        figure.colorbar(image, cax=bar, ticks=[-0.5, 0, 0.5])
+    figure = Figure(figsize=(7.0, 4.1))
+    top = float(np.abs(Y).max())
+    for ell in range(4):
+        for m in range(-ell, ell + 1):
+            axes = figure.add_axes((0.075 + (m + 3) * 0.128, 0.745 - ell * 0.235, 0.122, 0.205))
+            image = _show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
+            axes.set_title(f"m = {m}".replace("-", "−"), fontsize=7.5, pad=1.5)
+        figure.text(0.015, 0.845 - ell * 0.235, f"l = {ell}", fontsize=9)
+    bar = figure.add_axes((0.86, 0.75, 0.015, 0.2))
+    figure.colorbar(image, cax=bar, ticks=[-0.5, 0, 0.5])
     return figure, facts
 
 
@@ -80,29 +80,27 @@ def fig2_projection(module):
         ),
         "the sky is nowhere below zero": (float(shown[0][1].min()), 0, 1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.1), layout="constrained")
-        panels = figure.subplots(2, 3)
-        for axes, (title, values) in zip(panels.flat, shown, strict=False):
-            image = axes.imshow(
-                values.reshape(shape),
-                cmap=signed_color_map(),
-                vmin=-1.5,
-                vmax=1.5,
-                extent=(0, 360, -1, 1),
-                aspect=90,
-            )
-            axes.set(title=title, xticks=[], yticks=[-1, 1])
-        panels[1, 0].set(xticks=[0, 180, 360], xlabel="angle around z, degrees", ylabel="z")
-        panels[0, 0].set_ylabel("z")
-        axes = panels[1, 2]
-        axes.bar(range(4), errors, color=BLUE, width=0.6)
-        axes.set(title="error, root of the integral", xlabel="degree", xticks=range(4))
-        axes.set_xticklabels(["0", "1", "2", "4"])
-        axes.spines[["top", "right"]].set_visible(False)
-        figure.colorbar(
-            image, ax=panels[:, :2], ticks=[-1, 0, 1], shrink=0.6, location="left", extend="both"
+    figure, panels = subplots(7.0, 3.1, 2, 3)
+    for axes, (title, values) in zip(panels.flat, shown, strict=False):
+        image = axes.imshow(
+            values.reshape(shape),
+            cmap=signed_color_map(),
+            vmin=-1.5,
+            vmax=1.5,
+            extent=(0, 360, -1, 1),
+            aspect=90,
         )
+        axes.set(title=title, xticks=[], yticks=[-1, 1])
+    panels[1, 0].set(xticks=[0, 180, 360], xlabel="angle around z, degrees", ylabel="z")
+    panels[0, 0].set_ylabel("z")
+    axes = panels[1, 2]
+    axes.bar(range(4), errors, color=BLUE, width=0.6)
+    axes.set(title="error, root of the integral", xlabel="degree", xticks=range(4))
+    axes.set_xticklabels(["0", "1", "2", "4"])
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.colorbar(
+        image, ax=panels[:, :2], ticks=[-1, 0, 1], shrink=0.6, location="left", extend="both"
+    )
     return figure, facts
 
 
@@ -127,18 +125,16 @@ def fig3_tangent(module):
         "along each arrow f rises": bool(np.all(rises)),
         "over 200 arrows": (float(2 * len(at)), 200, 400),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        panels = figure.subplots(1, 2)
-        top = max(float(np.abs(values).max()) for values, _ in drawn)
-        titles = ("from −y: x to the right, z up", "from +z: x to the right, y up")
-        for axes, (values, arrows), title in zip(panels, drawn, titles, strict=True):
-            image = _show_ball(axes, values[:, 0], inside, top)
-            axes.quiver(
-                at[:, 0], at[:, 2], arrows[:, 0], arrows[:, 2], color=INK, scale=26, width=0.006
-            )
-            axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), title=title)
-        figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.7, label="f")
+    figure, panels = subplots(7.0, 3.3, 1, 2)
+    top = max(float(np.abs(values).max()) for values, _ in drawn)
+    titles = ("from −y: x to the right, z up", "from +z: x to the right, y up")
+    for axes, (values, arrows), title in zip(panels, drawn, titles, strict=True):
+        image = _show_ball(axes, values[:, 0], inside, top)
+        axes.quiver(
+            at[:, 0], at[:, 2], arrows[:, 0], arrows[:, 2], color=INK, scale=26, width=0.006
+        )
+        axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), title=title)
+    figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.7, label="f")
     return figure, facts
 
 
@@ -160,55 +156,53 @@ def fig4_irradiance(module):
         "degree 3 adds nothing": (float(np.abs(found[3] - found[2]).max()), 0, 1e-12),
         "degree 4 comes closer than degree 2": (errors[4] / errors[2], 0, 0.9),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        panels = figure.subplots(2, 3)
-        high = float(brute.max()) * 1.05
-        sky = _sky(normals, 6.0, 1.0)
-        off = (found[2] - brute) / mean * 100
-        far = 3.0
-        for axes, values, title, limits, colors in (
-            (panels[0, 0], sky, "light from a direction", (0, 5), "viridis"),
-            (panels[0, 1], brute, "irradiance, brute force", (0, high), "viridis"),
-            (panels[0, 2], found[2], "nine coefficients", (0, high), "viridis"),
-            (panels[1, 0], off, "difference, % of mean", (-far, far), signed_color_map()),
-        ):
-            image = axes.imshow(
-                values.reshape(shape),
-                cmap=colors,
-                vmin=limits[0],
-                vmax=limits[1],
-                extent=(0, 360, -1, 1),
-                aspect=90,
+    figure, panels = subplots(7.0, 3.3, 2, 3)
+    high = float(brute.max()) * 1.05
+    sky = _sky(normals, 6.0, 1.0)
+    off = (found[2] - brute) / mean * 100
+    far = 3.0
+    for axes, values, title, limits, colors in (
+        (panels[0, 0], sky, "light from a direction", (0, 5), "viridis"),
+        (panels[0, 1], brute, "irradiance, brute force", (0, high), "viridis"),
+        (panels[0, 2], found[2], "nine coefficients", (0, high), "viridis"),
+        (panels[1, 0], off, "difference, % of mean", (-far, far), signed_color_map()),
+    ):
+        image = axes.imshow(
+            values.reshape(shape),
+            cmap=colors,
+            vmin=limits[0],
+            vmax=limits[1],
+            extent=(0, 360, -1, 1),
+            aspect=90,
+        )
+        axes.set(title=title, xticks=[0, 180, 360], yticks=[-1, 0, 1])
+        if axes is not panels[0, 1]:
+            figure.colorbar(
+                image, ax=axes, shrink=0.7, ticks=[0, 2, 4] if limits[0] == 0 else [-3, 0, 3]
             )
-            axes.set(title=title, xticks=[0, 180, 360], yticks=[-1, 0, 1])
-            if axes is not panels[0, 1]:
-                figure.colorbar(
-                    image, ax=axes, shrink=0.7, ticks=[0, 2, 4] if limits[0] == 0 else [-3, 0, 3]
-                )
-        panels[0, 0].set_ylabel("z")
-        panels[1, 0].set(ylabel="z", xlabel="angle around z, degrees")
-        axes = panels[1, 1]
-        axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
-        axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
-        axes.set(yscale="log", xlabel="kept up to degree", title="largest error, % of mean")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes = panels[1, 2]
-        factors = [
-            float(
-                module.probe_irradiance(
-                    np.eye((ell + 1) ** 2)[ell * (ell + 1)][None, None, None, :, None],
-                    np.zeros((1, 3)),
-                    np.array([[0, 0, 1.0]]),
-                )[0, 0]
-                / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
-            )
-            for ell in range(5)
-        ]
-        axes.bar(range(5), factors, color=ORANGE, width=0.6)
-        axes.axhline(0, color=FRAME, linewidth=0.7)
-        axes.set(xlabel="degree l", title="factor of the lobe")
-        axes.spines[["top", "right"]].set_visible(False)
+    panels[0, 0].set_ylabel("z")
+    panels[1, 0].set(ylabel="z", xlabel="angle around z, degrees")
+    axes = panels[1, 1]
+    axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
+    axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
+    axes.set(yscale="log", xlabel="kept up to degree", title="largest error, % of mean")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes = panels[1, 2]
+    factors = [
+        float(
+            module.probe_irradiance(
+                np.eye((ell + 1) ** 2)[ell * (ell + 1)][None, None, None, :, None],
+                np.zeros((1, 3)),
+                np.array([[0, 0, 1.0]]),
+            )[0, 0]
+            / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
+        )
+        for ell in range(5)
+    ]
+    axes.bar(range(5), factors, color=ORANGE, width=0.6)
+    axes.axhline(0, color=FRAME, linewidth=0.7)
+    axes.set(xlabel="degree l", title="factor of the lobe")
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -250,28 +244,22 @@ def fig5_glyphs(module):
             1,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
-        axes = figure.subplots()
-        middle = density[:, n // 2].T
-        axes.imshow(
-            middle, cmap="gray_r", vmin=0, vmax=30, origin="lower", extent=(-0.5, n - 0.5) * 2
-        )
-        top = np.abs(change).max()
-        for i in range(n):
-            for k in range(n):
-                r = 0.8 * np.sqrt(np.abs(change[i, k]) / top)
-                for sign, color in ((1, CRIMSON), (-1, BLUE)):
-                    part = np.where(sign * change[i, k] > 0, r, 0)
-                    axes.fill(
-                        i + part * ring[:, 0], k + part * ring[:, 2], color=color, linewidth=0.3
-                    )
-        axes.annotate(
-            "", (11.2, 11.2), (9.9, 9.9), arrowprops={"arrowstyle": "->", "color": INK, "lw": 1.5}
-        )
-        axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
-        axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
-        axes.set_title("what a step will do: red brightens, blue darkens")
+    figure, axes = subplots(5.6, 5.2)
+    middle = density[:, n // 2].T
+    axes.imshow(middle, cmap="gray_r", vmin=0, vmax=30, origin="lower", extent=(-0.5, n - 0.5) * 2)
+    top = np.abs(change).max()
+    for i in range(n):
+        for k in range(n):
+            r = 0.8 * np.sqrt(np.abs(change[i, k]) / top)
+            for sign, color in ((1, CRIMSON), (-1, BLUE)):
+                part = np.where(sign * change[i, k] > 0, r, 0)
+                axes.fill(i + part * ring[:, 0], k + part * ring[:, 2], color=color, linewidth=0.3)
+    axes.annotate(
+        "", (11.2, 11.2), (9.9, 9.9), arrowprops={"arrowstyle": "->", "color": INK, "lw": 1.5}
+    )
+    axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
+    axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
+    axes.set_title("what a step will do: red brightens, blue darkens")
     return figure, facts
 
 
@@ -314,26 +302,23 @@ def fig6_coarse_to_fine(module):
         "on new views the fixed grid gets worse after its best": (max(fixed) - fixed[-1], 0.5, 10),
         "degree 0 loses more than 2 dB": (fine[-1] - plain[-1], 2, 20),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-        grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))
-        shown = [("truth", view)] + [(name, run[2]) for name, run in runs.items()]
-        for k, (title, values) in enumerate(shown):
-            axes = figure.add_subplot(grid[0, k])
-            screen = np.clip(values, 0, 1).reshape(28, 28) ** (1 / 2.2)
-            axes.imshow(screen, cmap="gray", vmin=0, vmax=1)
-            axes.set(xticks=[], yticks=[], title=title)
-        axes = figure.add_subplot(grid[1, :])
-        looks = ((GRAY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
-        for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
-            axes.plot(ends, scores, look, color=color, markersize=5)
-            axes.annotate(
-                name, (ends[-1], scores[-1]), (7, 0), textcoords="offset points", va="center"
-            )
-        axes.set(xlabel="step", ylabel="PSNR of new views [dB]", xlim=(-0.5, 23.5))
-        axes.set_xticks(range(0, 19, 3))
-        axes.grid(visible=True)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))
+    shown = [("truth", view)] + [(name, run[2]) for name, run in runs.items()]
+    for k, (title, values) in enumerate(shown):
+        axes = figure.add_subplot(grid[0, k])
+        screen = np.clip(values, 0, 1).reshape(28, 28) ** (1 / 2.2)
+        axes.imshow(screen, cmap="gray", vmin=0, vmax=1)
+        axes.set(xticks=[], yticks=[], title=title)
+    axes = figure.add_subplot(grid[1, :])
+    looks = ((GRAY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
+    for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
+        axes.plot(ends, scores, look, color=color, markersize=5)
+        note(axes, name, (ends[-1], scores[-1]), (7, 0), va="center")
+    axes.set(xlabel="step", ylabel="PSNR of new views [dB]", xlim=(-0.5, 23.5))
+    axes.set_xticks(range(0, 19, 3))
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -428,14 +413,9 @@ def _dilated(mask):
     return grown
 
 
-FIGURES = {
-    "fig1_harmonics": fig1_harmonics,
-    "fig2_projection": fig2_projection,
-    "fig3_tangent": fig3_tangent,
-    "fig4_irradiance": fig4_irradiance,
-    "fig5_glyphs": fig5_glyphs,
-    "fig6_coarse_to_fine": fig6_coarse_to_fine,
-}
+FIGURES = figures_of(
+    fig1_harmonics, fig2_projection, fig3_tangent, fig4_irradiance, fig5_glyphs, fig6_coarse_to_fine
+)
 RED = {
     "fig1_harmonics": "no_phase",
     "fig2_projection": "recurrence_sign",

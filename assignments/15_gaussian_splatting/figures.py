@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.build.kits import source_folders
-from photograd_course.viz.style import BLUE, GRAY, ORANGE, house_style, plain_axes, signed_color_map
+from photograd_course.viz.handout import Array, Facts, figures_of, subplots
+from photograd_course.viz.style import BLUE, GRAY, ORANGE, plain_axes, signed_color_map
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 Scene = dict[str, Array]
 Camera = dict[str, object]
 BLACK = np.zeros(3)
@@ -55,21 +54,19 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
         "held, the width stays": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
         "not held, it is more than twice as large in the end": (float(free[-1] / held[-1]), 2, 10),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
-        for k in (1, 2):
-            left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-        left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
-        left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
-        right.plot(slopes, free, "--", color=ORANGE, label="not held")
-        right.plot(slopes, held, color=BLUE, label="held")
-        right.axvline(limit, color=GRAY, linewidth=0.8)
-        right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
-        right.legend()
-        for axes in (left, right):
-            plain_axes(axes)
+    figure, (left, right) = subplots(7.0, 3.0, 1, 2)
+    left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
+    for k in (1, 2):
+        left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+    left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
+    left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
+    right.plot(slopes, free, "--", color=ORANGE, label="not held")
+    right.plot(slopes, held, color=BLUE, label="held")
+    right.axvline(limit, color=GRAY, linewidth=0.8)
+    right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
+    right.legend()
+    for axes in (left, right):
+        plain_axes(axes)
     return figure, facts
 
 
@@ -95,18 +92,16 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
             0.27,
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.4), layout="constrained")
-        axes = figure.subplots()
-        x = np.arange(count)
-        axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GRAY, label="α")
-        axes.bar(x + 0.2, weights[order], width=0.36, color=BLUE, label="weight T α")
-        through = np.concatenate([[1.0], np.cumprod(1 - alpha[order, 0])])
-        axes.step(np.arange(count + 1) - 0.5, through, where="post", color=ORANGE, label="T")
-        axes.set(xticks=x, xticklabels=[f"{depth[k]} m\nrow {k}" for k in order], ylim=(0, 1.05))
-        axes.legend(ncols=3)
-        axes.set_axisbelow(True)
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.4)
+    x = np.arange(count)
+    axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GRAY, label="α")
+    axes.bar(x + 0.2, weights[order], width=0.36, color=BLUE, label="weight T α")
+    through = np.concatenate([[1.0], np.cumprod(1 - alpha[order, 0])])
+    axes.step(np.arange(count + 1) - 0.5, through, where="post", color=ORANGE, label="T")
+    axes.set(xticks=x, xticklabels=[f"{depth[k]} m\nrow {k}" for k in order], ylim=(0, 1.05))
+    axes.legend(ncols=3)
+    axes.set_axisbelow(True)
+    plain_axes(axes)
     return figure, facts
 
 
@@ -148,28 +143,26 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "with densify the loss ends below a tenth": (float(curves[1][-1] / curves[0][-1]), 0, 0.1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
-        left.quiver(
-            x,
-            y,
-            *(pulls / np.abs(pulls).max()).T,
-            angles="xy",
-            scale_units="xy",
-            scale=0.5,
-            color=ORANGE,
-            width=0.006,
-        )
-        for k in (1, 2):
-            left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-        left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
-        right.semilogy(curves[0], color=GRAY, label="four Gaussians")
-        right.semilogy(curves[1], color=BLUE, label="up to sixty")
-        right.set(xlabel="step", ylabel="loss")
-        right.legend()
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2)
+    left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
+    left.quiver(
+        x,
+        y,
+        *(pulls / np.abs(pulls).max()).T,
+        angles="xy",
+        scale_units="xy",
+        scale=0.5,
+        color=ORANGE,
+        width=0.006,
+    )
+    for k in (1, 2):
+        left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+    left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
+    right.semilogy(curves[0], color=GRAY, label="four Gaussians")
+    right.semilogy(curves[1], color=BLUE, label="up to sixty")
+    right.set(xlabel="step", ylabel="loss")
+    right.legend()
+    plain_axes(right)
     return figure, facts
 
 
@@ -188,14 +181,10 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
         "it begins with 80 Gaussians": (float(new[1][0]), 80, 80),
         "it ends with more than 150": (float(len(found["means"])), 151, MOST),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 1.75), layout="constrained")
-        panels = figure.subplots(1, len(marks) + 1)
-        for axes, image, step, count, score in zip(
-            panels, shown, marks, new[1], scores, strict=False
-        ):
-            _show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
-        _show(panels[-1], truth, "truth\n")
+    figure, panels = subplots(7.0, 1.75, 1, len(marks) + 1)
+    for axes, image, step, count, score in zip(panels, shown, marks, new[1], scores, strict=False):
+        _show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
+    _show(panels[-1], truth, "truth\n")
     return figure, facts
 
 
@@ -235,31 +224,29 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
         -(slope @ camera["camera_from_world"][:2, :3].T) * (depth / camera["focal"][0])[:, None]
     )
     arrows *= 4 / np.quantile(np.linalg.norm(arrows, axis=1), 0.97)
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        panels = figure.subplots(1, 3)
-        _show(panels[0], truth, "a photograph")
-        _show(panels[1], shown, "arrows: where descent moves means")
-        _show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
-        panels[1].quiver(
-            *(places - 0.5).T,
-            *arrows.T,
-            angles="xy",
-            scale_units="xy",
-            scale=1,
-            color="white",
-            width=0.006,
+    figure, panels = subplots(7.0, 2.7, 1, 3)
+    _show(panels[0], truth, "a photograph")
+    _show(panels[1], shown, "arrows: where descent moves means")
+    _show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
+    panels[1].quiver(
+        *(places - 0.5).T,
+        *arrows.T,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        color="white",
+        width=0.006,
+    )
+    for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
+        panels[2].scatter(
+            *(places[which] - 0.5).T,
+            s=120 * pull[which] / pull.max(),
+            facecolors="none",
+            edgecolors=color,
+            linewidths=0.9,
         )
-        for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
-            panels[2].scatter(
-                *(places[which] - 0.5).T,
-                s=120 * pull[which] / pull.max(),
-                facecolors="none",
-                edgecolors=color,
-                linewidths=0.9,
-            )
-        for axes in panels:
-            axes.set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
+    for axes in panels:
+        axes.set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
     return figure, facts
 
 
@@ -287,39 +274,32 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     arrows *= 5 / np.quantile(np.linalg.norm(arrows, axis=1), 0.95)
     names = ("Gaussians", "volume (09)", "SH grid (11)")
     pictures = (module.picture(splats, unseen[0][0], BLACK)[0], score9[1], score11[1])
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.9), layout="constrained")
-        panels = figure.subplots(2, 4)
-        _show(panels[0, 0], unseen[0][1], "a new view: truth")
-        for axes, image, name, size, decibels in zip(
-            panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
-        ):
-            _show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
-        _show(panels[1, 0], truth, "a photograph")
-        _show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
-        panels[1, 1].quiver(
-            *(places - 0.5).T,
-            *arrows.T,
-            angles="xy",
-            scale_units="xy",
-            scale=1,
-            color="white",
-            width=0.008,
+    figure, panels = subplots(7.0, 3.9, 2, 4)
+    _show(panels[0, 0], unseen[0][1], "a new view: truth")
+    for axes, image, name, size, decibels in zip(
+        panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
+    ):
+        _show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
+    _show(panels[1, 0], truth, "a photograph")
+    _show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
+    panels[1, 1].quiver(
+        *(places - 0.5).T,
+        *arrows.T,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        color="white",
+        width=0.008,
+    )
+    panels[1, 1].set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
+    for axes, values in ((panels[1, 2], slope9), (panels[1, 3], slope11)):
+        flat = values[:, :, values.shape[2] // 2].T
+        root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
+        axes.imshow(
+            root, cmap=signed_color_map(), vmin=-1, vmax=1, origin="lower", interpolation="nearest"
         )
-        panels[1, 1].set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
-        for axes, values in ((panels[1, 2], slope9), (panels[1, 3], slope11)):
-            flat = values[:, :, values.shape[2] // 2].T
-            root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
-            axes.imshow(
-                root,
-                cmap=signed_color_map(),
-                vmin=-1,
-                vmax=1,
-                origin="lower",
-                interpolation="nearest",
-            )
-            axes.set(xticks=[], yticks=[])
-            axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
+        axes.set(xticks=[], yticks=[])
+        axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
     return figure, facts
 
 
@@ -521,14 +501,7 @@ def _calm(
     return drawn
 
 
-FIGURES = {
-    "fig1_projection": _calm(fig1_projection),
-    "fig2_weights": _calm(fig2_weights),
-    "fig3_pull": _calm(fig3_pull),
-    "fig4_fit": _calm(fig4_fit),
-    "fig5_arrows": _calm(fig5_arrows),
-    "fig6_three": _calm(fig6_three),
-}
+FIGURES = figures_of()
 RED = {
     "fig1_projection": "lens_not_held",
     "fig2_weights": "blend_inclusive",
