@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.handout import figures_of
+from photograd_course.viz.handout import Fact, figures_of
 from photograd_course.viz.style import signed_color_map
 
 DPI = 160
@@ -22,9 +22,9 @@ def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
     gradient = module.loss_gradient(picture, photograph)
     bright, dark = picture > photograph, picture < photograph
     facts = {
-        "positive where the picture is too bright": bool((gradient[bright] > 0).all()),
-        "negative where it is too dark": bool((gradient[dark] < 0).all()),
-        "zero where both agree": bool((gradient[far] == 0).all() and far.sum() > 50),
+        "positive where the picture is too bright": Fact((gradient[bright] > 0).all()),
+        "negative where it is too dark": Fact((gradient[dark] < 0).all()),
+        "zero where both agree": Fact((gradient[far] == 0).all() and far.sum() > 50),
     }
     return _draw(picture, photograph, gradient), facts
 

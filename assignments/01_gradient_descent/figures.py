@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 from photograd_course.viz import style
-from photograd_course.viz.handout import figures_of
+from photograd_course.viz.handout import Fact, figures_of
 
 PURPLE = "#542788"
 BLUE, RED_, ORANGE, GRAY, INK = style.BLUE, style.RED, style.ORANGE, style.GRAY, style.INK
@@ -49,11 +49,19 @@ def fig1_two_errors(module):
     wide, narrow = eps >= 1e-3, eps <= 1e-8
     best = float(eps[np.argmin(central)])
     facts = {
-        "central differences have slope 2": (_slope(eps[wide], central[wide]), 1.9, 2.1),
-        "forward differences have slope 1": (_slope(eps[wide], forward[wide]), 0.9, 1.1),
-        "below 1e-8 the error grows as 1/eps": (_slope(eps[narrow], central[narrow]), -1.3, -0.7),
-        "central ones are best near 1e-5": (float(np.log10(best)), -6.5, -4.0),
-        "there they are a hundred times better": (float(forward.min() / central.min()), 100.0, 1e6),
+        "central differences have slope 2": Fact(
+            _slope(eps[wide], central[wide]), 1.9, 2.1, red="forward_difference"
+        ),
+        "forward differences have slope 1": Fact(
+            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="the twin, computed here"
+        ),
+        "below 1e-8 the error grows as 1/eps": Fact(
+            _slope(eps[narrow], central[narrow]), -1.3, -0.7, red="missing_half"
+        ),
+        "central ones are best near 1e-5": Fact(np.log10(best), -6.5, -4.0, red="five_point"),
+        "there they are a hundred times better": Fact(
+            forward.min() / central.min(), 100.0, 1e6, red="forward_difference"
+        ),
     }
     figure, (axes,) = _panels([5.2], 2.9)
     axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
@@ -78,14 +86,20 @@ def fig2_step_lengths(module):
     walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
     x = {r: walk[0] for r, walk in walks.items()}
     facts = {
-        "at 0.2 the points stay on one side": bool((x[0.2] > 0.0).all()),
-        "at 0.2 the distance falls": bool((np.diff(np.abs(x[0.2])) < 0.0).all()),
-        "at 1 the first step reaches the minimum": bool(x[1.0][1] == 0.0),
-        "at 1.8 the sides alternate": bool((x[1.8][1:] * x[1.8][:-1] < 0.0).all()),
-        "0.2 and 1.8 are equally fast": (float(np.abs(x[1.8][-1] / x[0.2][-1])), 0.999, 1.001),
-        "at 2 the distance stays 1": bool((np.abs(x[2.0]) == 1.0).all()),
-        "at 2.1 it has grown tenfold": (float(np.abs(x[2.1][-1])), 9.0, 11.0),
-        "only 2.1 is said to be wrong": [w[2] for w in walks.values()] == [False] * 4 + [True],
+        "at 0.2 the points stay on one side": Fact((x[0.2] > 0.0).all(), red="no_tau"),
+        "at 0.2 the distance falls": Fact((np.diff(np.abs(x[0.2])) < 0.0).all(), red="uphill"),
+        "at 1 the first step reaches the minimum": Fact(x[1.0][1] == 0.0, red="uphill"),
+        "at 1.8 the sides alternate": Fact(
+            (x[1.8][1:] * x[1.8][:-1] < 0.0).all(), red="stale_gradient"
+        ),
+        "0.2 and 1.8 are equally fast": Fact(
+            np.abs(x[1.8][-1] / x[0.2][-1]), 0.999, 1.001, red="clipped_step"
+        ),
+        "at 2 the distance stays 1": Fact((np.abs(x[2.0]) == 1.0).all(), red="clipped_step"),
+        "at 2.1 it has grown tenfold": Fact(np.abs(x[2.1][-1]), 9.0, 11.0, red="clipped_step"),
+        "only 2.1 is said to be wrong": Fact(
+            [w[2] for w in walks.values()] == [False] * 4 + [True], red="clipped_step"
+        ),
     }
     figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
     steps = np.arange(n + 1)
@@ -125,13 +139,21 @@ def fig3_two_valleys(module):
     long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
     near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
     facts = {
-        "from 0 the walk ends on the left": (float(short_left[-1] - left_end), -1e-6, 1e-6),
-        "from 0.1 it ends on the right": (float(short_right[-1] - right_end), -1e-6, 1e-6),
-        "the hump lies between 0 and 0.1": (float(hump), 0.0, 0.1),
-        "the walk from 0 ends deeper": bool(f(short_left[-1]) < f(short_right[-1])),
-        "from 1.7 with 0.05 it ends on the right": (float(near[-1] - right_end), -1e-6, 1e-6),
-        "from 1.7 with 0.15 the first step crosses the hump": bool(long[1] < hump),
-        "and ends on the left": (float(long[-1] - left_end), -1e-6, 1e-6),
+        "from 0 the walk ends on the left": Fact(
+            short_left[-1] - left_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "from 0.1 it ends on the right": Fact(
+            short_right[-1] - right_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "the hump lies between 0 and 0.1": Fact(hump, 0.0, 0.1, held="a root of the derivative"),
+        "the walk from 0 ends deeper": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
+        "from 1.7 with 0.05 it ends on the right": Fact(
+            near[-1] - right_end, -1e-6, 1e-6, red="no_tau"
+        ),
+        "from 1.7 with 0.15 the first step crosses the hump": Fact(
+            long[1] < hump, red="clipped_step"
+        ),
+        "and ends on the left": Fact(long[-1] - left_end, -1e-6, 1e-6, red="stale_gradient"),
     }
     grid = np.linspace(-1.65, 1.8, 300)
     figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
@@ -188,23 +210,24 @@ def fig4_zigzag(module):
     size = {name: np.linalg.norm(x, axis=1) for name, x in (("fixed", fixed), ("ball", ball))}
     rate = float((size["fixed"][-1] / size["fixed"][-21]) ** (1 / 20))
     facts = {
-        "the steep coordinate changes sign in each step": bool(
-            (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all()
+        "the steep coordinate changes sign in each step": Fact(
+            (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all(), red="unit_steps"
         ),
-        "the flat one creeps along one side": bool((zigzag[:, 0] < 0.0).all()),
-        "the factor per step is 19/21 within 2 %": (rate * 21.0 / 19.0, 0.98, 1.02),
-        "just above the bound the walk goes wrong": bool(wrong[2]),
-        "after 40 steps momentum is sixty thousand times nearer": (
-            float(size["fixed"][-1] / size["ball"][-1]),
-            5.5e4,
-            6.5e4,
+        "the flat one creeps along one side": Fact((zigzag[:, 0] < 0.0).all(), red="unit_steps"),
+        "the factor per step is 19/21 within 2 %": Fact(
+            rate * 21.0 / 19.0, 0.98, 1.02, red="aliased_trail"
         ),
-        "tau is 0.134": (float(tau), 0.1335, 0.1345),
-        "beta is 0.403": (float(beta), 0.4025, 0.4035),
-        "the roots of Eq. (15) coincide for both curvatures": (
-            float(np.abs((1.0 + beta - tau * BOWL) ** 2 - 4.0 * beta).max()),
+        "just above the bound the walk goes wrong": Fact(wrong[2], red="unit_steps"),
+        "after 40 steps momentum is sixty thousand times nearer": Fact(
+            size["fixed"][-1] / size["ball"][-1], 5.5e4, 6.5e4, red="forgets_velocity"
+        ),
+        "tau is 0.134": Fact(tau, 0.1335, 0.1345, held="chosen by the figure"),
+        "beta is 0.403": Fact(beta, 0.4025, 0.4035, held="chosen by the figure"),
+        "the roots of Eq. (15) coincide for both curvatures": Fact(
+            np.abs((1.0 + beta - tau * BOWL) ** 2 - 4.0 * beta).max(),
             0.0,
             1e-12,
+            held="follows from tau and beta",
         ),
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
@@ -247,30 +270,26 @@ def fig5_adam(module):
     apart = float(np.abs(walks[1.0] - walks[1000.0]).max())
     first = lengths[1.0][0]
     facts = {
-        "the first step is tau in each coordinate": (float(np.abs(first / tau - 1).max()), 0, 1e-6),
-        "a thousandfold gradient moves no point by more than 1e-5": (apart, 0.0, 1e-5),
-        "in no coordinate is a step longer than 1.2 tau": (
-            float(lengths[1.0].max() / tau),
-            0.0,
-            1.2,
+        "the first step is tau in each coordinate": Fact(
+            np.abs(first / tau - 1).max(), 0, 1e-6, red="no_second_correction"
         ),
-        "gradient descent at its best step is nearer all the way": bool(
-            (size["gradient descent"][1:] < size["Adam"][1:]).all()
+        "a thousandfold gradient moves no point by more than 1e-5": Fact(
+            apart, 0.0, 1e-5, red="no_square_root"
         ),
-        "after 100 steps it is a hundred times nearer": (
-            float(size["Adam"][100] / size["gradient descent"][100]),
-            100.0,
-            130.0,
+        "in no coordinate is a step longer than 1.2 tau": Fact(
+            lengths[1.0].max() / tau, 0.0, 1.2, red="no_second_correction"
         ),
-        "after 200 steps it is within 0.001 of the minimum": (
-            float(np.linalg.norm(walks[1.0][-1])),
-            0.0,
-            1e-3,
+        "gradient descent at its best step is nearer all the way": Fact(
+            (size["gradient descent"][1:] < size["Adam"][1:]).all(), red="unit_steps"
         ),
-        "the flat and the steep way get equal first steps": (
-            float(first[0] / first[1]),
-            0.999,
-            1.001,
+        "after 100 steps it is a hundred times nearer": Fact(
+            size["Adam"][100] / size["gradient descent"][100], 100.0, 130.0, red="unit_steps"
+        ),
+        "after 200 steps it is within 0.001 of the minimum": Fact(
+            np.linalg.norm(walks[1.0][-1]), 0.0, 1e-3, red="swapped_betas"
+        ),
+        "the flat and the steep way get equal first steps": Fact(
+            first[0] / first[1], 0.999, 1.001, red="shared_scale"
         ),
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
@@ -332,13 +351,18 @@ def fig6_armijo(module):
     bound = [f(x) + c * each * slope for each in tried]
     refused = [along(t) > b for t, b in zip(tried, bound, strict=True)]
     facts = {
-        "all tries but the last lie above the line": refused == [True] * (len(tried) - 1) + [False],
-        "it tries 1.6, 0.96, 0.576 and 0.3456": bool(
-            len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9)
+        "all tries but the last lie above the line": Fact(
+            refused == [True] * (len(tried) - 1) + [False], red="no_promise"
         ),
-        "the last try is the answer": (float(tau / tried[-1]), 0.999999, 1.000001),
-        "the loss falls": bool(along(tau) < f(x)),
-        "with c = 1e-4 it would have taken 0.576": (float(cheap), 0.5759, 0.5761),
+        "it tries 1.6, 0.96, 0.576 and 0.3456": Fact(
+            len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9),
+            red="ignores_tau0",
+        ),
+        "the last try is the answer": Fact(
+            tau / tried[-1], 0.999999, 1.000001, red="one_too_short"
+        ),
+        "the loss falls": Fact(along(tau) < f(x), red="wrong_promise"),
+        "with c = 1e-4 it would have taken 0.576": Fact(cheap, 0.5759, 0.5761, red="one_too_short"),
     }
     grid = np.linspace(0.0, 1.35, 300)
     figure, (axes,) = _panels([5.2], 2.7)
@@ -366,64 +390,3 @@ def fig6_armijo(module):
 FIGURES = figures_of(
     fig1_two_errors, fig2_step_lengths, fig3_two_valleys, fig4_zigzag, fig5_adam, fig6_armijo
 )
-# For each fact a mutant that makes it untrue, and for each figure one of them.
-RED_FACTS = {
-    "fig1_two_errors": {
-        "central differences have slope 2": "forward_difference",
-        "below 1e-8 the error grows as 1/eps": "missing_half",
-        "central ones are best near 1e-5": "five_point",
-        "there they are a hundred times better": "forward_difference",
-    },
-    "fig2_step_lengths": {
-        "at 0.2 the points stay on one side": "no_tau",
-        "at 0.2 the distance falls": "uphill",
-        "at 1 the first step reaches the minimum": "uphill",
-        "at 1.8 the sides alternate": "stale_gradient",
-        "0.2 and 1.8 are equally fast": "clipped_step",
-        "at 2 the distance stays 1": "clipped_step",
-        "at 2.1 it has grown tenfold": "clipped_step",
-        "only 2.1 is said to be wrong": "clipped_step",
-    },
-    "fig3_two_valleys": {
-        "from 0 the walk ends on the left": "uphill",
-        "from 0.1 it ends on the right": "uphill",
-        "the walk from 0 ends deeper": "uphill",
-        "from 1.7 with 0.05 it ends on the right": "no_tau",
-        "from 1.7 with 0.15 the first step crosses the hump": "clipped_step",
-        "and ends on the left": "stale_gradient",
-    },
-    "fig4_zigzag": {
-        "the steep coordinate changes sign in each step": "unit_steps",
-        "the flat one creeps along one side": "unit_steps",
-        "the factor per step is 19/21 within 2 %": "aliased_trail",
-        "just above the bound the walk goes wrong": "unit_steps",
-        "after 40 steps momentum is sixty thousand times nearer": "forgets_velocity",
-    },
-    "fig5_adam": {
-        "the first step is tau in each coordinate": "no_second_correction",
-        "a thousandfold gradient moves no point by more than 1e-5": "no_square_root",
-        "in no coordinate is a step longer than 1.2 tau": "no_second_correction",
-        "gradient descent at its best step is nearer all the way": "unit_steps",
-        "after 100 steps it is a hundred times nearer": "unit_steps",
-        "after 200 steps it is within 0.001 of the minimum": "swapped_betas",
-        "the flat and the steep way get equal first steps": "shared_scale",
-    },
-    "fig6_armijo": {
-        "all tries but the last lie above the line": "no_promise",
-        "it tries 1.6, 0.96, 0.576 and 0.3456": "ignores_tau0",
-        "the last try is the answer": "one_too_short",
-        "the loss falls": "wrong_promise",
-        "with c = 1e-4 it would have taken 0.576": "one_too_short",
-    },
-}
-RED = {figure: next(iter(facts.values())) for figure, facts in RED_FACTS.items()}
-# Facts that do not depend on the module: what its results are compared with.
-HELD = {
-    "fig1_two_errors": {"forward differences have slope 1": "the twin, computed here"},
-    "fig3_two_valleys": {"the hump lies between 0 and 0.1": "a root of the derivative"},
-    "fig4_zigzag": {
-        "tau is 0.134": "chosen by the figure",
-        "beta is 0.403": "chosen by the figure",
-        "the roots of Eq. (15) coincide for both curvatures": "follows from tau and beta",
-    },
-}

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
-from photograd_course.viz.handout import figures_of
+from photograd_course.viz.handout import Fact, figures_of
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
@@ -111,10 +111,10 @@ def fig1_worked_graph(module):
         circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
     key(axes, 5.7, 0.45)
     facts = {
-        "the value is 35": (f.data, 35.0, 35.0),
-        "the sum is 7 and its gradient 5": a.data == 7.0 and a.grad == 5.0,
-        "x and y get 5": x.grad == 5.0 and y.grad == 5.0,
-        "z gets 7": (z.grad, 7.0, 7.0),
+        "the value is 35": Fact(f.data, 35.0, 35.0),
+        "the sum is 7 and its gradient 5": Fact(a.data == 7.0 and a.grad == 5.0),
+        "x and y get 5": Fact(x.grad == 5.0 and y.grad == 5.0),
+        "z gets 7": Fact(z.grad, 7.0, 7.0),
     }
     return figure, facts
 
@@ -160,10 +160,10 @@ def fig2_cost(module):
         axes.tick_params(labelsize=SMALL)
         axes.grid(True, axis="y")
     facts = {
-        "backward adds less than two contributions for each value": bool(share.max() < 2.0),
-        "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
-        "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
-        "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
+        "backward adds less than two contributions for each value": Fact(share.max() < 2.0),
+        "and hardly depends on the number of inputs": Fact(share[-1] / share[1], 0.8, 1.25),
+        "a diamond adds four contributions": Fact(np.allclose(ladder, 4 * np.array(rungs))),
+        "twelve diamonds have over 50 times as many paths": Fact(paths[-1] > 50 * ladder[-1]),
     }
     return figure, facts
 
@@ -206,12 +206,12 @@ def fig3_kink(module):
     right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
     far = np.abs(where - 2) > h + 1e-9
     facts = {
-        "0 left of the kink, 1 right of it": bool(
+        "0 left of the kink, 1 right of it": Fact(
             (slopes[where < 2] == 0).all() and (slopes[where > 2] == 1).all()
         ),
-        "at the tie x gets 0 and the other input 1": x.grad == 0.0 and two.grad == 1.0,
-        "differences give 1/2 at the tie": (steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
-        "both agree further than a step from the kink": bool(
+        "at the tie x gets 0 and the other input 1": Fact(x.grad == 0.0 and two.grad == 1.0),
+        "differences give 1/2 at the tie": Fact(steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
+        "both agree further than a step from the kink": Fact(
             np.allclose(slopes[far], steps[far], atol=1e-9)
         ),
     }
@@ -255,16 +255,16 @@ def fig4_order(module):
         _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
-        "the engine's gradient agrees with differences": (
-            gradients["every user first"]["x"] / right,
-            1 - 1e-6,
-            1 + 1e-6,
+        "the engine's gradient agrees with differences": Fact(
+            gradients["every user first"]["x"] / right, 1 - 1e-6, 1 + 1e-6
         ),
-        "in the engine's order users come first": all(mine[end] < mine[at] for at, end in uses),
-        "level by level a is visited before c, which uses it": theirs["a"] < theirs["c"],
-        "and x gets 4 only": (gradients["level by level"]["x"], 4.0, 4.0),
-        "a ends with 257 all the same": gradients["level by level"]["a"] == 257.0,
-        "every user first x gets 1028": gradients["every user first"]["x"] == 1028.0,
+        "in the engine's order users come first": Fact(
+            all(mine[end] < mine[at] for at, end in uses)
+        ),
+        "level by level a is visited before c, which uses it": Fact(theirs["a"] < theirs["c"]),
+        "and x gets 4 only": Fact(gradients["level by level"]["x"], 4.0, 4.0),
+        "a ends with 257 all the same": Fact(gradients["level by level"]["a"] == 257.0),
+        "every user first x gets 1028": Fact(gradients["every user first"]["x"] == 1028.0),
     }
     return figure, facts
 
@@ -322,14 +322,14 @@ def fig5_uses_add_up(module):
     plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
-        "the value is 34": (f.data, 34.0, 34.0),
-        "the uses bring 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
-        "x gets 11": (x.grad, 11.0, 11.0),
-        "the tangent of slope 11 touches": bend < 2e-4,
+        "the value is 34": Fact(f.data, 34.0, 34.0),
+        "the uses bring 1, 5 and 5": Fact(by_sum == 1.0 and by_square == [5.0, 5.0]),
+        "x gets 11": Fact(x.grad, 11.0, 11.0),
+        "the tangent of slope 11 touches": Fact(bend < 2e-4),
         "a line of slope 1 cuts through": (
-            34 - 0.1 * by_sum > 8.9 + 4.9**2 and 34 + 0.1 * by_sum < 9.1 + 5.1**2
+            Fact(34 - 0.1 * by_sum > 8.9 + 4.9**2 and 34 + 0.1 * by_sum < 9.1 + 5.1**2)
         ),
-        "y gets 1": (y.grad, 1.0, 1.0),
+        "y gets 1": Fact(y.grad, 1.0, 1.0),
     }
     return figure, facts
 
@@ -371,14 +371,12 @@ def fig6_steps(module):
         for exponent in (-12, -5, -3, -2)
     }
     facts = {
-        "at 1e-5 a right gradient is a thousand times below the limit": right[at[-5]] < 1e-9,
-        "a step of 1e-12 would refuse it": right[at[-12]] > 1e-6,
-        "ten times the step, a hundred times the truncation": (
-            right[at[-2]] / right[at[-3]],
-            90.0,
-            110.0,
+        "at 1e-5 a right gradient is a thousand times below the limit": Fact(right[at[-5]] < 1e-9),
+        "a step of 1e-12 would refuse it": Fact(right[at[-12]] > 1e-6),
+        "ten times the step, a hundred times the truncation": Fact(
+            right[at[-2]] / right[at[-3]], 90.0, 110.0
         ),
-        "1 % off is reported as 1 %": (wrong[at[-5]], 0.0098, 0.0101),
+        "1 % off is reported as 1 %": Fact(wrong[at[-5]], 0.0098, 0.0101),
     }
     return figure, facts
 
@@ -440,13 +438,13 @@ def fig7_picture(module):
     bar.set_ticks([-0.5, 0.0, 0.5])
     bar.ax.tick_params(labelsize=8)
     facts = {
-        "negative where the picture is too dark": bool((by_texel[4:8, 6:10] < 0).all()),
-        "positive where it is too bright": bool((by_texel[[0, -1]] > 0).all()),
-        "by what is seen there are two values": len(np.unique(by_pixel.round(12))) == 2,
-        "by the texels there are more": len(np.unique(by_texel.round(12))) > 2,
-        "their sums agree": (by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
-        "it agrees with differences": (by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
-        "a step against it lowers the loss": (loss_of(after)[0].data / loss.data, 0.0, 0.9),
+        "negative where the picture is too dark": Fact((by_texel[4:8, 6:10] < 0).all()),
+        "positive where it is too bright": Fact((by_texel[[0, -1]] > 0).all()),
+        "by what is seen there are two values": Fact(len(np.unique(by_pixel.round(12))) == 2),
+        "by the texels there are more": Fact(len(np.unique(by_texel.round(12))) > 2),
+        "their sums agree": Fact(by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
+        "it agrees with differences": Fact(by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
+        "a step against it lowers the loss": Fact(loss_of(after)[0].data / loss.data, 0.0, 0.9),
     }
     return figure, facts
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.metrics import psnr
-from photograd_course.viz.handout import Facts, figures_of, note, subplots
+from photograd_course.viz.handout import Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -25,10 +25,10 @@ def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
     bent = u[1:-1][bend > 1e-6]
     to_center = np.abs(bent[:, None] - np.array([1 / 6, 1 / 2, 5 / 6])).min(axis=1)
     facts: Facts = {
-        "at a center the surface is the texel": bool(np.allclose(at_centers, T[:, :, 0])),
-        "flat beyond the outermost centers": bool(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
-        "never outside the texels' range": (float(surface.min()), 0.1 - 1e-12, 1.0),
-        "bends only at columns of centers": bool(len(bent) >= 3 and to_center.max() < 1 / 361),
+        "at a center the surface is the texel": Fact(np.allclose(at_centers, T[:, :, 0])),
+        "flat beyond the outermost centers": Fact(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
+        "never outside the texels' range": Fact(surface.min(), 0.1 - 1e-12, 1.0),
+        "bends only at columns of centers": Fact(len(bent) >= 3 and to_center.max() < 1 / 361),
     }
     figure, (left, middle, right) = subplots(7.0, 2.1, 1, 3)
     extent = (0.0, 1.0, 1.0, 0.0)
@@ -75,11 +75,11 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     x = np.random.default_rng(3).uniform(-1, 1, (*shape, 1))
     left, right = np.vdot(module.bilinear_sample(x, uv), g), np.vdot(x[:, :, 0], back)
     facts: Facts = {
-        "nine texels get a share": (float(np.count_nonzero(back)), 9, 9),
-        "the shares add up to g": (float(back.sum() - g.sum()), -1e-12, 1e-12),
-        "two samples at one place add up": bool(np.allclose(back, alone, atol=1e-12)),
-        "the corner texel gets all of its sample": (float(back[3, 5]), 0.8 - 1e-12, 0.8 + 1e-12),
-        "<S x, g> = <x, S* g>": (float(left - right), -1e-12, 1e-12),
+        "nine texels get a share": Fact(np.count_nonzero(back), 9, 9),
+        "the shares add up to g": Fact(back.sum() - g.sum(), -1e-12, 1e-12),
+        "two samples at one place add up": Fact(np.allclose(back, alone, atol=1e-12)),
+        "the corner texel gets all of its sample": Fact(back[3, 5], 0.8 - 1e-12, 0.8 + 1e-12),
+        "<S x, g> = <x, S* g>": Fact(left - right, -1e-12, 1e-12),
     }
     figure, panels = subplots(7.0, 2.75, 1, 2)
     titles = ("samples with their g", "adjoint: what each texel gets")
@@ -128,17 +128,13 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
     large = np.abs(missing) > 0.05
     share = float(np.vdot(missing, added) / np.vdot(missing, missing))
     facts: Facts = {
-        "99 % of what misses by more than 0.05 moves the right way": (
-            float(agree[large].mean()),
-            0.99,
-            1,
+        "99 % of what misses by more than 0.05 moves the right way": Fact(
+            agree[large].mean(), 0.99, 1
         ),
-        "the step overshoots: it adds 1.6 times what is missing": (share, 1.4, 1.8),
-        "gradient and residual look alike": (_cosine(missing, added), 0.95, 0.999),
-        "the step brings the texture closer": (
-            float(np.linalg.norm(missing - added) / np.linalg.norm(missing)),
-            0,
-            0.75,
+        "the step overshoots: it adds 1.6 times what is missing": Fact(share, 1.4, 1.8),
+        "gradient and residual look alike": Fact(_cosine(missing, added), 0.95, 0.999),
+        "the step brings the texture closer": Fact(
+            np.linalg.norm(missing - added) / np.linalg.norm(missing), 0, 0.75
         ),
     }
     figure, panels = subplots(7.0, 4.2, 2, 2)
@@ -181,12 +177,12 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
             errors[share].append(psnr(T, truth))
     peak = int(np.argmax(errors[1.05]))
     facts: Facts = {
-        "0.95 of the bound: over 55 dB after 25 steps": (errors[0.95][25], 55, 80),
-        "0.95 never gets worse": bool((np.diff(errors[0.95]) > 0).all()),
-        "0.3 is slower": (errors[0.3][25] - errors[0.95][25], -60, -10),
-        "1.05 first looks well": (float(max(errors[1.05])), 20, 40),
-        "1.05 then loses more than 10 dB": (max(errors[1.05]) - errors[1.05][-1], 10, 100),
-        "and it turns after 5 steps or more": (float(peak), 5, 55),
+        "0.95 of the bound: over 55 dB after 25 steps": Fact(errors[0.95][25], 55, 80),
+        "0.95 never gets worse": Fact((np.diff(errors[0.95]) > 0).all()),
+        "0.3 is slower": Fact(errors[0.3][25] - errors[0.95][25], -60, -10),
+        "1.05 first looks well": Fact(max(errors[1.05]), 20, 40),
+        "1.05 then loses more than 10 dB": Fact(max(errors[1.05]) - errors[1.05][-1], 10, 100),
+        "and it turns after 5 steps or more": Fact(peak, 5, 55),
     }
     figure, axes = subplots(7.0, 2.9)
     looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
@@ -225,22 +221,18 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
     worst_to_rim = float(np.hypot(*(np.argwhere(unseen) - worst).T).min())
     samples = _mean_of_samples(uv[:1500], target[:1500], truth.shape)
     facts: Facts = {
-        "over 95 % of what was measured is right to 0.02": (float((error < 0.02).mean()), 0.95, 1),
-        "the worst lies at the rim of the patch": (worst_to_rim, 0, 1.5),
-        "nearly 50,000 samples": (float(len(uv)), 49_000, 51_000),
-        "unseen texels are as they were": bool(np.array_equal(T[unseen], start[unseen])),
-        "unseen texels lie in the patch": (float(unseen.mean()), 0.04, 0.07),
-        "the loss falls with every step": bool((np.diff(losses) < 0).all()),
-        "after 3 steps noise is still to be seen": (psnr(early[seen], truth[seen]), 12, 32),
-        "over half of the error is gone by then": (
-            float(np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen])),
-            0.2,
-            0.5,
+        "over 95 % of what was measured is right to 0.02": Fact((error < 0.02).mean(), 0.95, 1),
+        "the worst lies at the rim of the patch": Fact(worst_to_rim, 0, 1.5),
+        "nearly 50,000 samples": Fact(len(uv), 49_000, 51_000),
+        "unseen texels are as they were": Fact(np.array_equal(T[unseen], start[unseen])),
+        "unseen texels lie in the patch": Fact(unseen.mean(), 0.04, 0.07),
+        "the loss falls with every step": Fact((np.diff(losses) < 0).all()),
+        "after 3 steps noise is still to be seen": Fact(psnr(early[seen], truth[seen]), 12, 32),
+        "over half of the error is gone by then": Fact(
+            np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen]), 0.2, 0.5
         ),
-        "over a third of the dark half's values are below zero then": (
-            float((early[24:][seen[24:]] < 0).mean()),
-            1 / 3,
-            0.6,
+        "over a third of the dark half's values are below zero then": Fact(
+            (early[24:][seen[24:]] < 0).mean(), 1 / 3, 0.6
         ),
     }
     figure = Figure(figsize=(7.0, 4.7), layout="constrained")
@@ -265,23 +257,15 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
     coarse, picked = levels[2], rings[2::4, 2::4]
     fine_half = (i[::4, ::4] ** 2 + j[::4, ::4] ** 2) > 0.9
     facts: Facts = {
-        "eight levels": (float(len(levels)), 8, 8),
-        "each level has the same mean": (
-            max(abs(float(level.mean() - rings.mean())) for level in levels),
-            0,
-            1e-12,
+        "eight levels": Fact(len(levels), 8, 8),
+        "each level has the same mean": Fact(
+            max(abs(float(level.mean() - rings.mean())) for level in levels), 0, 1e-12
         ),
-        "picked texels flicker where the rings are fine": (
-            float(picked[fine_half].std()),
-            0.3,
-            0.4,
+        "picked texels flicker where the rings are fine": Fact(picked[fine_half].std(), 0.3, 0.4),
+        "about half of the false contrast remains where rings are of medium width": Fact(
+            coarse[6:14, 6:14].std() / picked[6:14, 6:14].std(), 0.4, 0.65
         ),
-        "about half of the false contrast remains where rings are of medium width": (
-            float(coarse[6:14, 6:14].std() / picked[6:14, 6:14].std()),
-            0.4,
-            0.65,
-        ),
-        "the mip level is even there": (float(coarse[fine_half].std()), 0, 0.05),
+        "the mip level is even there": Fact(coarse[fine_half].std(), 0, 0.05),
     }
     figure = Figure(figsize=(7.0, 2.6), layout="constrained")
     shown = ((rings, "texture, 128 × 128"), (picked, "every 4th texel"), (coarse, "mip level 2"))

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
-from photograd_course.viz.handout import figures_of, note, subplots
+from photograd_course.viz.handout import Fact, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -31,26 +31,30 @@ def fig1_furnace(module):
         )
     plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
     facts = {
-        "mirrors of roughness 1 return 1 - ln 2 straight up": (
-            float(mirrors[1.0][-1] - 1 + np.log(2)),
-            -1e-9,
-            1e-9,
+        "mirrors of roughness 1 return 1 - ln 2 straight up": Fact(
+            mirrors[1.0][-1] - 1 + np.log(2), -1e-9, 1e-9, red="lobe_printed"
         ),
-        "no mirror returns more than came": (
-            max(float(values.max()) for values in mirrors.values()),
-            0.3,
-            1.0,
+        "no mirror returns more than came": Fact(
+            max(float(values.max()) for values in mirrors.values()), 0.3, 1.0, red="lobe_no_masking"
         ),
-        "Burley's, roughness 1, returns 1.46 at 0.05": (float(burley[1.0][1]), 1.46, 1.47),
-        "Burley's, roughness 1, is above 1 everywhere": (float(burley[1.0].min()), 1.0, 1.1),
-        "Burley's, roughness 0.3, is nowhere above 1": (float(burley[0.3].max()), 0.5, 1.0),
-        "as printed, Cook and Torrance's returns four times as much": (
-            float(np.abs(printed / right - 4).max()),
-            0,
-            1e-9,
+        "Burley's, roughness 1, returns 1.46 at 0.05": Fact(
+            burley[1.0][1], 1.46, 1.47, red="furnace_mean"
         ),
-        "repaired it nowhere returns more than came": (float(right.max()), 0.8, 1.0),
-        "white plastic of roughness 0.6 returns 1.06 at 0.1": (float(plastic), 1.055, 1.065),
+        "Burley's, roughness 1, is above 1 everywhere": Fact(
+            burley[1.0].min(), 1.0, 1.1, red="furnace_over_pi"
+        ),
+        "Burley's, roughness 0.3, is nowhere above 1": Fact(
+            burley[0.3].max(), 0.5, 1.0, red="furnace_no_cosine"
+        ),
+        "as printed, Cook and Torrance's returns four times as much": Fact(
+            np.abs(printed / right - 4).max(), 0, 1e-9, held="about a model that is given"
+        ),
+        "repaired it nowhere returns more than came": Fact(
+            right.max(), 0.8, 1.0, red="furnace_viewer_cosine"
+        ),
+        "white plastic of roughness 0.6 returns 1.06 at 0.1": Fact(
+            plastic, 1.055, 1.065, red="gltf_ground_keeps_all"
+        ),
     }
     figure, panels = subplots(7.0, 3.2, 1, 2, width_ratios=(1.5, 1))
     axes = panels[0]
@@ -90,18 +94,20 @@ def fig2_lobes(module):
     away = np.isclose(np.abs(np.degrees(angle) - 45), 40)  # of the mirror direction
     peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
     facts = {
-        "Phong's peak lies in the mirror direction": (
-            float(np.degrees(angle[np.argmax(highlight)])),
-            44.4,
-            45.6,
+        "Phong's peak lies in the mirror direction": Fact(
+            np.degrees(angle[np.argmax(highlight)]), 44.4, 45.6, held="about a model that is given"
         ),
-        "at roughness 0.4 the peak lies within 3 degrees of it": (peaks[0.4], 44, 48),
-        "at roughness 0.6 it lies 11.5 degrees beyond": (peaks[0.6], 56.4, 56.6),
-        "at roughness 0.8 it is brightest from the horizon": (peaks[0.8], 89, 90),
-        "40 degrees away GGX has 1000 times Phong's light or more": (
-            float((curves[0.4][away] / matched[away]).min()),
-            1000,
-            1e6,
+        "at roughness 0.4 the peak lies within 3 degrees of it": Fact(
+            peaks[0.4], 44, 48, red="lobe_not_squared"
+        ),
+        "at roughness 0.6 it lies 11.5 degrees beyond": Fact(
+            peaks[0.6], 56.4, 56.6, red="lobe_no_roots"
+        ),
+        "at roughness 0.8 it is brightest from the horizon": Fact(
+            peaks[0.8], 89, 90, red="lobe_facets_stretched"
+        ),
+        "40 degrees away GGX has 1000 times Phong's light or more": Fact(
+            (curves[0.4][away] / matched[away]).min(), 1000, 1e6, red="lobe_beckmann"
         ),
     }
     figure, panels = subplots(7.0, 2.9, 1, 2)
@@ -139,21 +145,15 @@ def fig3_samples(module):
     right = float(module.furnace(_mirror(module, r), np.array([z]))[0, 0])
     spread = weights.std() / np.sqrt(n)
     facts = {
-        "no weight is above 1": (float(weights.max()), 0.5, 1 + 1e-9),
-        "the mean weight is the albedo within four standard errors": (
-            float(abs(weights.mean() - right) / spread),
-            0,
-            4,
+        "no weight is above 1": Fact(weights.max(), 0.5, 1 + 1e-9, red="pdf_half"),
+        "the mean weight is the albedo within four standard errors": Fact(
+            abs(weights.mean() - right) / spread, 0, 4, red="sample_half_ball"
         ),
-        "directions drawn evenly are more than three times as noisy": (
-            float(plain.std() / weights.std()),
-            3,
-            100,
+        "directions drawn evenly are more than three times as noisy": Fact(
+            plain.std() / weights.std(), 3, 100, red="pdf_all_facets"
         ),
-        "for both viewers about a tenth leads below the surface": (
-            float(np.abs(np.array(below) - 0.1).max()),
-            0,
-            0.02,
+        "for both viewers about a tenth leads below the surface": Fact(
+            np.abs(np.array(below) - 0.1).max(), 0, 0.02, red="sample_all_facets"
         ),
     }
     figure, panels = subplots(7.0, 2.7, 1, 3)
@@ -199,13 +199,15 @@ def fig4_blend(module):
     mixed = np.array([module.furnace(premixed(m), view)[0, 0] for m in metalness])
     straight = blended[0] + metalness * (blended[-1] - blended[0])
     facts = {
-        "blended, half metal returns 0.937": (float(blended[5]), 0.9365, 0.9375),
-        "premixed it returns 0.698": (float(mixed[5]), 0.6975, 0.6985),
-        "blended it is a straight line": (float(np.abs(blended - straight).max()), 0, 1e-12),
-        "premixed it is darker than both ends": (
-            float(mixed[5] / min(mixed[0], mixed[-1])),
-            0.5,
-            0.9,
+        "blended, half metal returns 0.937": Fact(
+            blended[5], 0.9365, 0.9375, red="gltf_varnish_added"
+        ),
+        "premixed it returns 0.698": Fact(mixed[5], 0.6975, 0.6985, red="lobe_uncorrelated"),
+        "blended it is a straight line": Fact(
+            np.abs(blended - straight).max(), 0, 1e-12, red="gltf_premixed"
+        ),
+        "premixed it is darker than both ends": Fact(
+            mixed[5] / min(mixed[0], mixed[-1]), 0.5, 0.9, red="lobe_half"
         ),
     }
     figure, axes = subplots(6.0, 2.7)
@@ -232,18 +234,18 @@ def fig5_chart(module):
     gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
     falls = [peak[1.0, r].max() for r in roughs]
     facts = {
-        "each pixel of half metal is the mean of those above and below": (
-            float(np.max(off)),
-            0,
-            1e-12,
+        "each pixel of half metal is the mean of those above and below": Fact(
+            np.max(off), 0, 1e-12, red="gltf_premixed"
         ),
-        "the metal's highlight has the base color": (
-            float(np.abs(gold / gold[0] - color / color[0]).max()),
-            0,
-            0.05,
+        "the metal's highlight has the base color": Fact(
+            np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
         ),
-        "the varnish's highlight is nearly white": (float(white[2] / white[0]), 0.75, 1.0),
-        "the metal's highlight gets darker to the right": bool((np.diff(falls) < 0).all()),
+        "the varnish's highlight is nearly white": Fact(
+            white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
+        ),
+        "the metal's highlight gets darker to the right": Fact(
+            (np.diff(falls) < 0).all(), red="lobe_no_masking"
+        ),
     }
     figure = Figure(figsize=(7.0, 4.4))
     for row, m in enumerate(metals):
@@ -280,14 +282,16 @@ def fig6_by_roughness(module):
     ring = (center > 14) & (center < 26)
     dark = wi[:, 2] <= 0
     facts = {
-        "the middle of the highlight gets darker": (float(slope[middle]), -1e9, -1),
-        "the ring around it gets brighter": (float((slope[ring] > 0).mean()), 0.95, 1),
-        "a step of 0.02 differs by up to 13 % of the largest derivative": (
-            float(np.abs(told - change).max() / np.abs(told).max()),
-            0.12,
-            0.13,
+        "the middle of the highlight gets darker": Fact(slope[middle], -1e9, -1, red="back_no_D"),
+        "the ring around it gets brighter": Fact(
+            (slope[ring] > 0).mean(), 0.95, 1, red="back_q_sign"
         ),
-        "in the shadow it is exactly zero": (float(np.abs(slope[dark]).max()), 0, 0),
+        "a step of 0.02 differs by up to 13 % of the largest derivative": Fact(
+            np.abs(told - change).max() / np.abs(told).max(), 0.12, 0.13, red="back_of_alpha"
+        ),
+        "in the shadow it is exactly zero": Fact(
+            np.abs(slope[dark]).max(), 0, 0, red="back_rows_summed"
+        ),
     }
     figure, panels = subplots(7.0, 2.6, 1, 3)
     picture = np.ones((size, size, 3))
@@ -367,59 +371,3 @@ def _ball(module, size, color, m, r):
 FIGURES = figures_of(
     fig1_furnace, fig2_lobes, fig3_samples, fig4_blend, fig5_chart, fig6_by_roughness
 )
-RED = {
-    "fig1_furnace": "furnace_no_cosine",
-    "fig2_lobes": "lobe_not_squared",
-    "fig3_samples": "sample_all_facets",
-    "fig4_blend": "gltf_premixed",
-    "fig5_chart": "gltf_tinted_varnish",
-    "fig6_by_roughness": "back_q_sign",
-}
-# A mutant for each fact.
-RED_FACTS = {
-    "fig1_furnace": {
-        "mirrors of roughness 1 return 1 - ln 2 straight up": "lobe_printed",
-        "no mirror returns more than came": "lobe_no_masking",
-        "Burley's, roughness 1, returns 1.46 at 0.05": "furnace_mean",
-        "Burley's, roughness 1, is above 1 everywhere": "furnace_over_pi",
-        "Burley's, roughness 0.3, is nowhere above 1": "furnace_no_cosine",
-        "repaired it nowhere returns more than came": "furnace_viewer_cosine",
-        "white plastic of roughness 0.6 returns 1.06 at 0.1": "gltf_ground_keeps_all",
-    },
-    "fig2_lobes": {
-        "at roughness 0.4 the peak lies within 3 degrees of it": "lobe_not_squared",
-        "at roughness 0.6 it lies 11.5 degrees beyond": "lobe_no_roots",
-        "at roughness 0.8 it is brightest from the horizon": "lobe_facets_stretched",
-        "40 degrees away GGX has 1000 times Phong's light or more": "lobe_beckmann",
-    },
-    "fig3_samples": {
-        "no weight is above 1": "pdf_half",
-        "the mean weight is the albedo within four standard errors": "sample_half_ball",
-        "directions drawn evenly are more than three times as noisy": "pdf_all_facets",
-        "for both viewers about a tenth leads below the surface": "sample_all_facets",
-    },
-    "fig4_blend": {
-        "blended, half metal returns 0.937": "gltf_varnish_added",
-        "premixed it returns 0.698": "lobe_uncorrelated",
-        "blended it is a straight line": "gltf_premixed",
-        "premixed it is darker than both ends": "lobe_half",
-    },
-    "fig5_chart": {
-        "each pixel of half metal is the mean of those above and below": "gltf_premixed",
-        "the metal's highlight has the base color": "gltf_metalness_reversed",
-        "the varnish's highlight is nearly white": "gltf_tinted_varnish",
-        "the metal's highlight gets darker to the right": "lobe_no_masking",
-    },
-    "fig6_by_roughness": {
-        "the middle of the highlight gets darker": "back_no_D",
-        "the ring around it gets brighter": "back_q_sign",
-        "a step of 0.02 differs by up to 13 % of the largest derivative": "back_of_alpha",
-        "in the shadow it is exactly zero": "back_rows_summed",
-    },
-}
-HELD = {
-    "fig1_furnace": {
-        "as printed, Cook and Torrance's returns four times as much": "about a model that is given"
-    },
-    "fig2_lobes": {"Phong's peak lies in the mirror direction": "about a model that is given"},
-}

@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -31,10 +31,10 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
         missed.append(1 - kept.mean())
         quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
     facts: Facts = {
-        "the quadratic is off by more than a centimeter from 1e7": (quadratic[7], 1e-2, 10.0),
-        "from 1e8 by more than the radius": (quadratic[8], 1.0, 1e3),
-        "from 1e8 it misses a tenth or more": (float(missed[8]), 0.1, 1.0),
-        "ours below 1e-7 at 1e8": (ours[8], 0.0, 1e-7),
+        "the quadratic is off by more than a centimeter from 1e7": Fact(quadratic[7], 1e-2, 10.0),
+        "from 1e8 by more than the radius": Fact(quadratic[8], 1.0, 1e3),
+        "from 1e8 it misses a tenth or more": Fact(missed[8], 0.1, 1.0),
+        "ours below 1e-7 at 1e8": Fact(ours[8], 0.0, 1e-7),
     }
     figure, axes = subplots(7.0, 2.9)
     tiny = 1e-17
@@ -74,9 +74,9 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     lost_by_corner = ~_from_a_corner(places - 4 * ways, ways, corners).any(axis=1)
     facts: Facts = {
-        "none is lost": bool(not any(lost)),
-        "from a corner more than one in a hundred": (float(np.mean(lost_by_corner)), 0.01, 1.0),
-        "weights give back the place": (float(max(sums, default=1.0)), 0.0, 1e-12),
+        "none is lost": Fact(not any(lost)),
+        "from a corner more than one in a hundred": Fact(np.mean(lost_by_corner), 0.01, 1.0),
+        "weights give back the place": Fact(max(sums, default=1.0), 0.0, 1e-12),
     }
     figure, (left, right) = subplots(7.0, 3.3, 1, 2)
     left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
@@ -115,10 +115,10 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
     critical = np.degrees(angle[got_out].max(initial=0.0))
     facts: Facts = {
-        "the middle crosses 1.5 radii behind the center": (float(crossing[-1]), 1.48, 1.5),
-        "the outer ones nearer": bool(0.5 < crossing[0] < 1.2),
-        "all get in and out": bool(entered.all() and left_it.all()),
-        "nothing gets out beyond 41.8 degrees": (float(critical), 41.3, 41.9),
+        "the middle crosses 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
+        "the outer ones nearer": Fact(0.5 < crossing[0] < 1.2),
+        "all get in and out": Fact(entered.all() and left_it.all()),
+        "nothing gets out beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
     }
     figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
     left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
@@ -165,17 +165,15 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     ends = [module.march_sdf(_ball(1 + e), origins, ways, 20.0, 3000)[0] for e in (-eps, eps)]
     apart = (_finite(ends[1]) - _finite(ends[0])) / (2 * eps)
     facts: Facts = {
-        "both arrive at the wall": bool(max(abs(each[1] - 6) for each in walks) < 1e-8),
-        "the grazing ray asks three times as often or more": (
-            len(walks[0][0]) / len(walks[1][0]),
-            3.0,
-            30.0,
+        "both arrive at the wall": Fact(max(abs(each[1] - 6) for each in walks) < 1e-8),
+        "the grazing ray asks three times as often or more": Fact(
+            len(walks[0][0]) / len(walks[1][0]), 3.0, 30.0
         ),
-        "no step is longer than the distance": bool(
+        "no step is longer than the distance": Fact(
             len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()
         ),
-        "differences agree": (float(np.abs(slopes - apart).max()), 0.0, 1e-3),
-        "towards the outline it grows": bool(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
+        "differences agree": Fact(np.abs(slopes - apart).max(), 0.0, 1e-3),
+        "towards the outline it grows": Fact(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
     }
     figure, (left, right) = subplots(7.0, 3.2, 1, 2, width_ratios=(1.4, 1))
     left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
@@ -212,13 +210,13 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
-        "the answers are those of asking every triangle": bool(
+        "the answers are those of asking every triangle": Fact(
             np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
         ),
-        "beside the root's box one box is enough": bool(counts.min() == 1),
-        "the dearest pixel asks for some 60": (int(counts.max()), 45, 75),
-        "from 256 to 4096 less than twice as many": (means[3] / means[1], 1.0, 2.0),
-        "with 256 triangles about 25": (means[1], 22.0, 28.0),
+        "beside the root's box one box is enough": Fact(counts.min() == 1),
+        "the dearest pixel asks for some 60": Fact(int(counts.max()), 45, 75),
+        "from 256 to 4096 less than twice as many": Fact(means[3] / means[1], 1.0, 2.0),
+        "with 256 triangles about 25": Fact(means[1], 22.0, 28.0),
     }
     figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
     drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)

@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -35,11 +35,11 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         right.append(_irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
     ours, by_area, no_cosine, right = (np.array(e) for e in (ours, by_area, no_cosine, right))
     facts: Facts = {
-        "dots on the line": (float(np.abs(ours / right - 1).max()), 0.0, 1e-6),
-        "by area 4 times too bright or more": (float((by_area / right).min()), 4.0, 8.0),
-        "more than 40 times at 4 m": (float(by_area[-1] / right[-1]), 40.0, 48.0),
-        "without the cosine right below the lamp": (float(no_cosine[0] / right[0]), 1.0, 1.1),
-        "at 4 m twice as bright or more": (float(no_cosine[-1] / right[-1]), 2.0, 3.0),
+        "dots on the line": Fact(np.abs(ours / right - 1).max(), 0.0, 1e-6),
+        "by area 4 times too bright or more": Fact((by_area / right).min(), 4.0, 8.0),
+        "more than 40 times at 4 m": Fact(by_area[-1] / right[-1], 40.0, 48.0),
+        "without the cosine right below the lamp": Fact(no_cosine[0] / right[0], 1.0, 1.1),
+        "at 4 m twice as bright or more": Fact(no_cosine[-1] / right[-1], 2.0, 3.0),
     }
     figure, axes = subplots(7.0, 2.9)
     axes.semilogy(aside, right, color=GRAY)
@@ -94,14 +94,14 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     means = np.array([[p[strip == k].mean() for k in range(4)] for p in pictures])
     best = spread[:2].min(axis=0)
     facts: Facts = {
-        "lamps alone: noisy where it is polished": (spread[0, 0] / spread[0, 3], 3.0, 30.0),
-        "metal alone: noisy where it is rough": (spread[1, 3] / spread[1, 0], 1.5, 10.0),
-        "its tallest bar is the rough strip's": bool(spread[1].argmax() == 3),
-        "polished: lamps alone are noisier": (spread[0, 0] / spread[1, 0], 1.5, 30.0),
-        "rough: the metal alone is noisier": (spread[1, 3] / spread[0, 3], 1.5, 30.0),
-        "both: never much worse than the better one": (float((spread[2] / best).max()), 0.2, 1.3),
-        "polished: the metal's mean": (means[2, 0] / means[1, 0], 0.8, 1.25),
-        "rough: the lamps' mean": (means[2, 3] / means[0, 3], 0.8, 1.25),
+        "lamps alone: noisy where it is polished": Fact(spread[0, 0] / spread[0, 3], 3.0, 30.0),
+        "metal alone: noisy where it is rough": Fact(spread[1, 3] / spread[1, 0], 1.5, 10.0),
+        "its tallest bar is the rough strip's": Fact(spread[1].argmax() == 3),
+        "polished: lamps alone are noisier": Fact(spread[0, 0] / spread[1, 0], 1.5, 30.0),
+        "rough: the metal alone is noisier": Fact(spread[1, 3] / spread[0, 3], 1.5, 30.0),
+        "both: never much worse than the better one": Fact((spread[2] / best).max(), 0.2, 1.3),
+        "polished: the metal's mean": Fact(means[2, 0] / means[1, 0], 0.8, 1.25),
+        "rough: the lamps' mean": Fact(means[2, 3] / means[0, 3], 0.8, 1.25),
     }
     figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.3, 1))
     for column, (name, p) in enumerate(
@@ -149,11 +149,11 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
     off = np.abs(np.array(means) - right) / np.maximum(errors, 1e-3)
     ceiling = [float(each.reshape(height, width, 3)[0, 12:24].mean()) for each in pictures[1:]]
     facts: Facts = {
-        "depth 1 is the lamp alone": (float((pictures[0].sum(axis=1) > 0).mean()), 0.003, 0.1),
-        "direct light leaves the ceiling black": (ceiling[0], 0.0, 1e-9),
-        "bounces light it": (ceiling[1], 0.02, 1.0),
-        "dots on the line": (float(off.max()), 0.0, 4.5),
-        "counted twice: too bright from depth 3 on": bool(
+        "depth 1 is the lamp alone": Fact((pictures[0].sum(axis=1) > 0).mean(), 0.003, 0.1),
+        "direct light leaves the ceiling black": Fact(ceiling[0], 0.0, 1e-9),
+        "bounces light it": Fact(ceiling[1], 0.02, 1.0),
+        "dots on the line": Fact(off.max(), 0.0, 4.5),
+        "counted twice: too bright from depth 3 on": Fact(
             abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]
         ),
     }
@@ -202,11 +202,11 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     right = (1 - albedo**depths) / (1 - albedo)
     off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e in means)
     facts: Facts = {
-        "the means agree with the series": (off, 0.0, 4.5),
-        "with roulette below 4 surfaces": (float(visits[0][-1]), 2.0, 4.0),
-        "without it as many as the depth allows": (float(visits[1][-1]), 10.0, 13.0),
-        "dearer at depth 8": (float((prices[0] / prices[1])[2]), 1.1, 2.0),
-        "about even at depth 12": (float((prices[0] / prices[1])[3]), 0.7, 1.4),
+        "the means agree with the series": Fact(off, 0.0, 4.5),
+        "with roulette below 4 surfaces": Fact(visits[0][-1], 2.0, 4.0),
+        "without it as many as the depth allows": Fact(visits[1][-1], 10.0, 13.0),
+        "dearer at depth 8": Fact((prices[0] / prices[1])[2], 1.1, 2.0),
+        "about even at depth 12": Fact((prices[0] / prices[1])[3], 0.7, 1.4),
     }
     figure, axes = subplots(7.0, 2.4, 1, 3)
     for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
@@ -255,10 +255,10 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     ours, wrong, right, errors = (np.array(each) for each in (ours, wrong, right, errors))
     tracks = [_descent(module, shared) for shared in (False, True)]
     facts: Facts = {
-        "dots on the line": (float((np.abs(ours - right) / errors).max()), 0.0, 4.5),
-        "crosses are not": (float((np.abs(wrong - right) / errors).max()), 6.0, 1e4),
-        "own numbers settle at the truth": (float(tracks[0][-40:].mean()), 0.57, 0.63),
-        "shared ones about a quarter too dark": (1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
+        "dots on the line": Fact((np.abs(ours - right) / errors).max(), 0.0, 4.5),
+        "crosses are not": Fact((np.abs(wrong - right) / errors).max(), 6.0, 1e4),
+        "own numbers settle at the truth": Fact(tracks[0][-40:].mean(), 0.57, 0.63),
+        "shared ones about a quarter too dark": Fact(1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
     }
     figure, (left, side) = subplots(7.0, 2.8, 1, 2)
     left.plot(values, right, color=GRAY)
@@ -295,11 +295,11 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     exact = np.array([0.8, 0.5, 0.2, 0.35])
     found = np.append(color, rough)
     facts: Facts = {
-        "your picture is the core's": (_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
-        "your gradient is the core's": (_apart(mine, slope), 0.0, 0.35),
-        "base color found within 0.02": (float(np.abs(found - exact)[:3].max()), 0.0, 0.02),
-        "roughness found within 0.02": (float(abs(found - exact)[3]), 0.0, 0.02),
-        "the core as well": (float(np.abs(core - exact).max()), 0.0, 0.02),
+        "your picture is the core's": Fact(_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your gradient is the core's": Fact(_apart(mine, slope), 0.0, 0.35),
+        "base color found within 0.02": Fact(np.abs(found - exact)[:3].max(), 0.0, 0.02),
+        "roughness found within 0.02": Fact(abs(found - exact)[3], 0.0, 0.02),
+        "the core as well": Fact(np.abs(core - exact).max(), 0.0, 0.02),
     }
     figure = Figure(figsize=(7.0, 4.0), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))

@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -27,23 +27,19 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
     thin, dense = x < 3, x > 3
     front = dense & (x < 4.5)
     facts: Facts = {
-        "the second cloud is four times as dense": (
-            float(sigma[dense].max() / sigma[thin].max()),
-            3.9,
-            4.1,
+        "the second cloud is four times as dense": Fact(
+            sigma[dense].max() / sigma[thin].max(), 3.9, 4.1, held="what the figure was given"
         ),
-        "T never rises": bool((np.diff(T) <= 0).all()),
-        "T ends at 0.02 or so": (float(T_end), 0.01, 0.03),
-        "weights and T_end add up to 1": (float(w.sum() + T_end), 1 - 1e-12, 1 + 1e-12),
-        "the dense cloud has less weight than the thin one": (
-            float(w[dense].sum() / w[thin].sum()),
-            0.1,
-            0.95,
+        "T never rises": Fact((np.diff(T) <= 0).all(), red="T_end_opacity"),
+        "T ends at 0.02 or so": Fact(T_end, 0.01, 0.03, red="no_step"),
+        "weights and T_end add up to 1": Fact(
+            w.sum() + T_end, 1 - 1e-12, 1 + 1e-12, red="inclusive"
         ),
-        "its front has more weight than its back": (
-            float(w[front].sum() / max(w[dense & ~front].sum(), 1e-300)),
-            1.5,
-            1e6,
+        "the dense cloud has less weight than the thin one": Fact(
+            w[dense].sum() / w[thin].sum(), 0.1, 0.95, red="no_occlusion"
+        ),
+        "its front has more weight than its back": Fact(
+            w[front].sum() / max(w[dense & ~front].sum(), 1e-300), 1.5, 1e6, red="back_to_front"
         ),
     }
     figure, panels = subplots(7.0, 4.4, 3, 1, sharex=True)
@@ -84,22 +80,18 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
     at_256 = {name: float(e[counts == 256][0]) for name, e in errors.items()}
     shortcuts = min(at_256[names[1]], at_256[names[2]])
     facts: Facts = {
-        "equation (7): a quarter with each halving": (
-            float(np.abs(slopes[names[0]] + 2).max()),
-            0,
-            0.1,
+        "equation (7): a quarter with each halving": Fact(
+            np.abs(slopes[names[0]] + 2).max(), 0, 0.1, red="riemann"
         ),
-        "the shortcuts halve only": (
-            float(max(np.abs(slopes[names[k]] + 1).max() for k in (1, 2))),
-            0,
-            0.1,
+        "the shortcuts halve only": Fact(
+            max(np.abs(slopes[names[k]] + 1).max() for k in (1, 2)), 0, 0.1, red="no_step"
         ),
-        "both are thousands of times as far off at 256 steps": (
-            shortcuts / max(at_256[names[0]], 1e-300),
-            2000,
-            1e6,
+        "both are thousands of times as far off at 256 steps": Fact(
+            shortcuts / max(at_256[names[0]], 1e-300), 2000, 1e6, red="inclusive"
         ),
-        "without dt the error doubles": (float(np.abs(slopes[names[3]] - 1).max()), 0, 0.1),
+        "without dt the error doubles": Fact(
+            np.abs(slopes[names[3]] - 1).max(), 0, 0.1, red="lecture"
+        ),
     }
     figure, axes = subplots(7.0, 3.1)
     for name, (_, color, dashes, mark) in ways.items():
@@ -144,15 +136,17 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     dark, bright = (sigma > 0.05) & (x < 3), (sigma > 0.05) & (x > 3)
     error = np.linalg.norm(d_sigma - differences) / np.linalg.norm(differences)
     facts: Facts = {
-        "the sum agrees with differences": (float(error), 0, 1e-7),
-        "negative at each step of the dark cloud": (float(d_sigma[dark].max()), -10, -1e-9),
-        "positive at each step of the bright cloud": (float(d_sigma[bright].min()), 1e-9, 10),
-        "a step never shows less of itself": (float(own.min()), 0, 1),
-        "what is hidden counts minus": (float(hidden.max()), -10, 0),
-        "weights sum to 1 - T_end": (
-            float(w.sum() + _T_end(module, sigma, dt)),
-            1 - 1e-9,
-            1 + 1e-9,
+        "the sum agrees with differences": Fact(error, 0, 1e-7, red="adjoint_off_by_one"),
+        "negative at each step of the dark cloud": Fact(
+            d_sigma[dark].max(), -10, -1e-9, red="adjoint_no_occlusion"
+        ),
+        "positive at each step of the bright cloud": Fact(
+            d_sigma[bright].min(), 1e-9, 10, red="adjoint_only_occlusion"
+        ),
+        "a step never shows less of itself": Fact(own.min(), 0, 1, red="adjoint_sign"),
+        "what is hidden counts minus": Fact(hidden.max(), -10, 0, red="adjoint_occlusion_added"),
+        "weights sum to 1 - T_end": Fact(
+            w.sum() + _T_end(module, sigma, dt), 1 - 1e-9, 1 + 1e-9, red="adjoint_color_no_T"
         ),
     }
     figure, axes = subplots(7.0, 3.0)
@@ -200,11 +194,21 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     subtle = (NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     worst = np.linalg.norm(right[few] - checked) / np.linalg.norm(checked)
     facts: Facts = {
-        "the right one agrees with differences to 1e-7": (float(worst), 0, 1e-7),
-        "the first two point elsewhere": (max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9),
-        "the other four have cosines above 0.99": (min(cosine[k] for k in subtle), 0.99, 1.0001),
-        "and are wrong by more than 10 %": (min(error[k] for k in subtle), 0.1, 20),
-        "without dt the cosine is 1": (cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9),
+        "the right one agrees with differences to 1e-7": Fact(
+            worst, 0, 1e-7, red="adjoint_inclusive"
+        ),
+        "the first two point elsewhere": Fact(
+            max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9, red="adjoint_no_occlusion"
+        ),
+        "the other four have cosines above 0.99": Fact(
+            min(cosine[k] for k in subtle), 0.99, 1.0001, red="adjoint_sign"
+        ),
+        "and are wrong by more than 10 %": Fact(
+            min(error[k] for k in subtle), 0.1, 20, red="adjoint_missing_step"
+        ),
+        "without dt the cosine is 1": Fact(
+            cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9, red="adjoint_riemann"
+        ),
     }
     figure, axes = subplots(7.0, 2.6)
     names = list(found)
@@ -235,11 +239,13 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     overlap = [(max(p[0][0], p[1][0]), min(p[0][1], p[1][1])) for p in planes]
     facts: Facts = {
-        "the first ray passes where both stretches overlap": bool(
-            np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0]
+        "the first ray passes where both stretches overlap": Fact(
+            np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0], red="box_first_entry"
         ),
-        "those of the second do not overlap": bool(overlap[1][0] > overlap[1][1]),
-        "it misses": bool(near[1] == 0 and far[1] == 0),
+        "those of the second do not overlap": Fact(
+            overlap[1][0] > overlap[1][1], held="what the figure was given"
+        ),
+        "it misses": Fact(near[1] == 0 and far[1] == 0, red="box_misses_kept"),
     }
     colors = (BLUE, CRIMSON)
     figure, (left, right) = subplots(7.0, 2.6, 1, 2, width_ratios=(1.1, 1))
@@ -309,22 +315,27 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     lacking, excess = slope[ring], slope[other]
     columns = slope.sum(axis=2).T[::-1]
     facts: Facts = {
-        "over 95 % of the ring's summed |derivative| is negative": (
-            float(-lacking[lacking < 0].sum() / max(np.abs(lacking).sum(), 1e-300)),
+        "over 95 % of the ring's summed |derivative| is negative": Fact(
+            -lacking[lacking < 0].sum() / max(np.abs(lacking).sum(), 1e-300),
             0.95,
             1,
+            red="view_no_sigma",
         ),
-        "over 95 % of the extra ball's summed |derivative| is positive": (
-            float(excess[excess > 0].sum() / max(np.abs(excess).sum(), 1e-300)),
+        "over 95 % of the extra ball's summed |derivative| is positive": Fact(
+            excess[excess > 0].sum() / max(np.abs(excess).sum(), 1e-300),
             0.95,
             1,
+            red="adjoint_only_occlusion",
         ),
-        "far from ball, ring and extra ball it is below a thousandth": (
-            float(np.abs(slope[nowhere]).max() / np.abs(slope).max()),
+        "far from ball, ring and extra ball it is below a thousandth": Fact(
+            np.abs(slope[nowhere]).max() / np.abs(slope).max(),
             0,
             1e-3,
+            red="view_samples_of_one_ray",
         ),
-        "photograph and guess differ": (float(np.abs(seen - photograph).max()), 0.3, 1),
+        "photograph and guess differ": Fact(
+            np.abs(seen - photograph).max(), 0.3, 1, red="no_occlusion"
+        ),
     }
     figure, panels = subplots(7.0, 2.35, 1, 3)
     for axes, values, title in zip(
@@ -453,55 +464,3 @@ def _reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:
 
 
 FIGURES = figures_of(fig1_ray, fig2_order, fig3_adjoint, fig4_wrong, fig5_box, fig6_view)
-RED = {
-    "fig1_ray": "inclusive",
-    "fig2_order": "riemann",
-    "fig3_adjoint": "adjoint_no_occlusion",
-    "fig4_wrong": "adjoint_inclusive",
-    "fig5_box": "box_first_entry",
-    "fig6_view": "view_no_sigma",
-}
-RED_FACTS = {
-    "fig1_ray": {
-        "T never rises": "T_end_opacity",
-        "T ends at 0.02 or so": "no_step",
-        "weights and T_end add up to 1": "inclusive",
-        "the dense cloud has less weight than the thin one": "no_occlusion",
-        "its front has more weight than its back": "back_to_front",
-    },
-    "fig2_order": {
-        "equation (7): a quarter with each halving": "riemann",
-        "the shortcuts halve only": "no_step",
-        "both are thousands of times as far off at 256 steps": "inclusive",
-        "without dt the error doubles": "lecture",
-    },
-    "fig3_adjoint": {
-        "the sum agrees with differences": "adjoint_off_by_one",
-        "negative at each step of the dark cloud": "adjoint_no_occlusion",
-        "positive at each step of the bright cloud": "adjoint_only_occlusion",
-        "a step never shows less of itself": "adjoint_sign",
-        "what is hidden counts minus": "adjoint_occlusion_added",
-        "weights sum to 1 - T_end": "adjoint_color_no_T",
-    },
-    "fig4_wrong": {
-        "the right one agrees with differences to 1e-7": "adjoint_inclusive",
-        "the first two point elsewhere": "adjoint_no_occlusion",
-        "the other four have cosines above 0.99": "adjoint_sign",
-        "and are wrong by more than 10 %": "adjoint_missing_step",
-        "without dt the cosine is 1": "adjoint_riemann",
-    },
-    "fig5_box": {
-        "the first ray passes where both stretches overlap": "box_first_entry",
-        "it misses": "box_misses_kept",
-    },
-    "fig6_view": {
-        "over 95 % of the ring's summed |derivative| is negative": "view_no_sigma",
-        "over 95 % of the extra ball's summed |derivative| is positive": "adjoint_only_occlusion",
-        "far from ball, ring and extra ball it is below a thousandth": "view_samples_of_one_ray",
-        "photograph and guess differ": "no_occlusion",
-    },
-}
-HELD = {
-    "fig1_ray": {"the second cloud is four times as dense": "what the figure was given"},
-    "fig5_box": {"those of the second do not overlap": "what the figure was given"},
-}

@@ -7,7 +7,8 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from photograd_course.viz.handout import Array, Facts, figures_of, note, subplots
+from photograd_course.captures import all_around, rays_to_origin
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -23,15 +24,15 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
     curves = {c: np.array([_gap(module, s, c)[0] for s in sigma]) for c in (0.9, 0.3)}
     crossing = float(np.interp(0, slopes[::-1], colors[::-1]))
     facts: Facts = {
-        "the derivative changes its sign at the color seen behind": (
-            crossing - behind,
-            -0.01,
-            0.01,
+        "the derivative changes its sign at the color seen behind": Fact(
+            crossing - behind, -0.01, 0.01, red="back_first_channel"
         ),
-        "differences agree": (float(np.abs(slopes - apart).max()), 0, 1e-5),
-        "the derivative by color is zero": (float(by_color.max()), 0, 0),
-        "bright: the loss falls at first": bool(curves[0.9][1] < curves[0.9][0]),
-        "dim: it rises": bool((np.diff(curves[0.3]) > 0).all()),
+        "differences agree": Fact(np.abs(slopes - apart).max(), 0, 1e-5, red="back_without_g"),
+        "the derivative by color is zero": Fact(by_color.max(), 0, 0, red="back_without_g"),
+        "bright: the loss falls at first": Fact(
+            curves[0.9][1] < curves[0.9][0], held="what the figure was given"
+        ),
+        "dim: it rises": Fact((np.diff(curves[0.3]) > 0).all(), held="what the figure was given"),
     }
     figure, (left, right) = subplots(7.0, 2.8, 1, 2)
     left.axhline(0, color=GRAY, linewidth=0.8)
@@ -65,12 +66,16 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
     growth = shells[-1] / shells[-2]
     half = len(module.octree_from_dense(np.indices((n, n, n))[0] < n // 2))
     facts: Facts = {
-        "one odd cell costs 8 nodes a level": bool(
-            (np.array(ones) == 1 + 8 * np.log2(sizes)).all()
+        "one odd cell costs 8 nodes a level": Fact(
+            (np.array(ones) == 1 + 8 * np.log2(sizes)).all(), red="octree_empty_cut"
         ),
-        "a shell about four times as many with each doubling": (float(growth), 3.4, 4.6),
-        "at 32 less than a fifth of the cells": (shells[-1] / n**3, 0.01, 0.2),
-        "two halves are eight leaves": bool(half == 9),
+        "a shell about four times as many with each doubling": Fact(
+            growth, 3.4, 4.6, red="octree_never_merged"
+        ),
+        "at 32 less than a fifth of the cells": Fact(
+            shells[-1] / n**3, 0.01, 0.2, red="octree_never_merged"
+        ),
+        "two halves are eight leaves": Fact(half == 9, red="octree_full_cut"),
     }
     figure, (left, right) = subplots(7.0, 3.3, 1, 2)
     for low, side, full in _leaves_in_slice(module, tree, n, n // 2):
@@ -119,13 +124,13 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     inside = full[tuple(np.moveaxis(np.clip(np.floor(fine), 0, n - 1).astype(int), 2, 0))]
     occupied = inside.mean() * count * len(first)
     facts: Facts = {
-        "exactly the samples in full cells": bool((wanted == right).all()),
-        "read samples cover at most 1.3 times the occupied length": (
-            float(wanted.sum() / occupied),
-            0.7,
-            1.3,
+        "exactly the samples in full cells": Fact((wanted == right).all(), red="skip_one_too_far"),
+        "read samples cover at most 1.3 times the occupied length": Fact(
+            wanted.sum() / occupied, 0.7, 1.3, red="skip_nothing"
         ),
-        "fewer questions than a third of the samples": (len(questions) / right.size, 0.01, 1 / 3),
+        "fewer questions than a third of the samples": Fact(
+            len(questions) / right.size, 0.01, 1 / 3, red="skip_each_sample"
+        ),
     }
     figure, axes = subplots(7.0, 4.1)
     for low, side, is_full in _leaves_in_slice(module, tree, n, n // 2):
@@ -167,18 +172,17 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
     theory = (1 + 1 / (1 - loads)) / 2, (1 + 1 / (1 - loads) ** 2) / 2
     two_thirds = loads <= 0.7
     facts: Facts = {
-        "hits follow the formula to 15 % up to 0.7": (
-            float(np.abs(np.array(found) / theory[0] - 1)[two_thirds].max()),
-            0,
-            0.15,
+        "hits follow the formula to 15 % up to 0.7": Fact(
+            np.abs(np.array(found) / theory[0] - 1)[two_thirds].max(), 0, 0.15, red="hash_backwards"
         ),
-        "misses to 25 %": (
-            float(np.abs(np.array(missing) / theory[1] - 1)[two_thirds].max()),
+        "misses to 25 %": Fact(
+            np.abs(np.array(missing) / theory[1] - 1)[two_thirds].max(),
             0,
             0.25,
+            red="hash_from_zero",
         ),
-        "half full: a miss looks at less than 3": (float(missing[2]), 1.0, 3.0),
-        "nine tenths full: at more than 40": (float(missing[5]), 40.0, 200.0),
+        "half full: a miss looks at less than 3": Fact(missing[2], 1.0, 3.0, red="hash_from_zero"),
+        "nine tenths full: at more than 40": Fact(missing[5], 40.0, 200.0, red="hash_from_zero"),
     }
     figure, axes = subplots(7.0, 2.9)
     x = np.linspace(0.02, 0.92, 90)
@@ -225,22 +229,21 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     ring[voxels[~ball] @ np.array([n * n, n, 1])] = True
     ring &= far
     facts: Facts = {
-        "voxels without extinction change no pixel": (
-            float(max(np.abs(each - before).max() for each in pictures)),
+        "voxels without extinction change no pixel": Fact(
+            max(np.abs(each - before).max() for each in pictures),
             0,
             1e-12,
+            red="skip_stops_at_full",
         ),
-        "those that exist get the same derivative": (
-            float(np.abs(np.array(maps)[:, at] - d_kept[:, 3]).max()),
-            0,
-            1e-12,
+        "those that exist get the same derivative": Fact(
+            np.abs(np.array(maps)[:, at] - d_kept[:, 3]).max(), 0, 1e-12, red="back_to_the_last"
         ),
-        "bright: over 90 % of the missing ring is asked for": (
-            float((maps[0][ring] < 0).mean()),
-            0.9,
-            1.0,
+        "bright: over 90 % of the missing ring is asked for": Fact(
+            (maps[0][ring] < 0).mean(), 0.9, 1.0, red="back_without_g"
         ),
-        "black: less than half of it": (float((maps[1][ring] < 0).mean()), 0.0, 0.5),
+        "black: less than half of it": Fact(
+            (maps[1][ring] < 0).mean(), 0.0, 0.5, red="skip_stops_at_full"
+        ),
     }
     figure, panels = subplots(7.0, 2.6, 1, 3)
     own = np.zeros(n**3)
@@ -284,10 +287,18 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     dense = _decibels(_picture(module, n, full, unseen), truth)
     gap = np.array(scores[1]) - scores[0]
     facts: Facts = {
-        "pruned every 3 steps it loses more than 5 dB": (float(gap[0]), 5.0, 30.0),
-        "growing, it is never below all voxels": (float(min(scores[1]) - dense), 0.0, 10.0),
-        "with less than three quarters of the voxels": (len(kept[1, 3][0]) / n**3, 0.05, 0.75),
-        "the later it is pruned, the less is lost": bool((np.diff(gap) < 0).all()),
+        "pruned every 3 steps it loses more than 5 dB": Fact(
+            gap[0], 5.0, 30.0, red="fit_never_prunes"
+        ),
+        "growing, it is never below all voxels": Fact(
+            min(scores[1]) - dense, 0.0, 10.0, red="fit_never_grows"
+        ),
+        "with less than three quarters of the voxels": Fact(
+            len(kept[1, 3][0]) / n**3, 0.05, 0.75, red="fit_never_prunes"
+        ),
+        "the later it is pruned, the less is lost": Fact(
+            (np.diff(gap) < 0).all(), red="fit_never_grows"
+        ),
     }
     one = slice(1600, 3200)
     figure = Figure(figsize=(7.0, 4.6), layout="constrained")
@@ -372,18 +383,7 @@ def _looks(
 
 def _cameras(views: int, size: int, turned: float = 0.0) -> Array:
     """Rays (2, views size^2, 3) of cameras all around."""
-    height = 1 - (np.arange(views) + 0.5) * 2 / views
-    phi, ring = np.arange(views) * 2.399963 + turned, np.sqrt(1 - height**2)
-    a = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.38
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - a[:, None, None] * up + a[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(3.2 * place, (size**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays_to_origin(3.2 * all_around(views, turned), size, 0.38)
 
 
 def _object(n: int) -> tuple[Array, Array]:
@@ -432,53 +432,3 @@ def _decibels(a: Array, b: Array) -> float:
 
 
 FIGURES = figures_of(fig1_absent, fig2_octree, fig3_skip, fig4_hash, fig5_lost, fig6_topology)
-RED = {
-    "fig1_absent": "back_without_g",
-    "fig2_octree": "octree_empty_cut",
-    "fig3_skip": "skip_one_too_far",
-    "fig4_hash": "hash_from_zero",
-    "fig5_lost": "back_to_the_last",
-    "fig6_topology": "fit_never_grows",
-}
-RED_FACTS = {
-    "fig1_absent": {
-        "the derivative changes its sign at the color seen behind": "back_first_channel",
-        "differences agree": "back_without_g",
-        "the derivative by color is zero": "back_without_g",
-    },
-    "fig2_octree": {
-        "one odd cell costs 8 nodes a level": "octree_empty_cut",
-        "a shell about four times as many with each doubling": "octree_never_merged",
-        "at 32 less than a fifth of the cells": "octree_never_merged",
-        "two halves are eight leaves": "octree_full_cut",
-    },
-    "fig3_skip": {
-        "exactly the samples in full cells": "skip_one_too_far",
-        "read samples cover at most 1.3 times the occupied length": "skip_nothing",
-        "fewer questions than a third of the samples": "skip_each_sample",
-    },
-    "fig4_hash": {
-        "hits follow the formula to 15 % up to 0.7": "hash_backwards",
-        "misses to 25 %": "hash_from_zero",
-        "half full: a miss looks at less than 3": "hash_from_zero",
-        "nine tenths full: at more than 40": "hash_from_zero",
-    },
-    "fig5_lost": {
-        "voxels without extinction change no pixel": "skip_stops_at_full",
-        "those that exist get the same derivative": "back_to_the_last",
-        "bright: over 90 % of the missing ring is asked for": "back_without_g",
-        "black: less than half of it": "skip_stops_at_full",
-    },
-    "fig6_topology": {
-        "pruned every 3 steps it loses more than 5 dB": "fit_never_prunes",
-        "growing, it is never below all voxels": "fit_never_grows",
-        "with less than three quarters of the voxels": "fit_never_prunes",
-        "the later it is pruned, the less is lost": "fit_never_grows",
-    },
-}
-HELD = {
-    "fig1_absent": {
-        "bright: the loss falls at first": "what the figure was given",
-        "dim: it rises": "what the figure was given",
-    }
-}

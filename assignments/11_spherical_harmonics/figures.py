@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.metrics import psnr
-from photograd_course.viz.handout import figures_of, note, subplots
+from photograd_course.viz.handout import Fact, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -23,15 +24,17 @@ def fig1_harmonics(module):
     there, back = module.sh_basis(around, 3), module.sh_basis(-around, 3)
     odd = np.repeat([1, -1, 1, -1], [1, 3, 5, 7])
     facts = {
-        "degree 0 is the same everywhere": (float(np.ptp(Y[:, 0])), 0, 1e-12),
-        "l = 1, m = 1 is negative towards +x": (float(east[3]), -1, -0.4),
-        "l = 1, m = 0 is positive towards +z": (float(pole[2]), 0.4, 1),
-        "odd degrees change sign at the opposite point, even ones do not": (
-            float(np.abs(back - there * odd).max()),
-            0,
-            1e-12,
+        "degree 0 is the same everywhere": Fact(
+            np.ptp(Y[:, 0]), 0, 1e-12, held="no known mistake makes it vary"
         ),
-        "all but the first have mean zero": (float(np.abs(weights @ there)[1:].max()), 0, 1e-12),
+        "l = 1, m = 1 is negative towards +x": Fact(east[3], -1, -0.4, red="no_phase"),
+        "l = 1, m = 0 is positive towards +z": Fact(pole[2], 0.4, 1, red="pole_along_y"),
+        "odd degrees change sign at the opposite point, even ones do not": Fact(
+            np.abs(back - there * odd).max(), 0, 1e-12, red="angle_once"
+        ),
+        "all but the first have mean zero": Fact(
+            np.abs(weights @ there)[1:].max(), 0, 1e-12, red="recurrence_sign"
+        ),
     }
     figure = Figure(figsize=(7.0, 4.1))
     top = float(np.abs(Y).max())
@@ -61,24 +64,22 @@ def fig2_projection(module):
     four = rows[4][0][:, 0]
     peak = shown[-1][1]
     facts = {
-        "each degree comes closer": bool((np.diff(errors) < 0).all()),
-        "the mean is kept from the first": (max(abs(mean - 1) for mean in means), 0, 1e-9),
-        "degree 4 finds the lamp to 10 degrees": (
-            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP))),
-            0,
-            10,
+        "each degree comes closer": Fact((np.diff(errors) < 0).all(), red="project_summed"),
+        "the mean is kept from the first": Fact(
+            max(abs(mean - 1) for mean in means), 0, 1e-9, red="project_mean"
         ),
-        "degree 4 keeps less than half of the lamp's peak": (
-            float(peak.max() / shown[0][1].max()),
-            0.1,
-            0.5,
+        "degree 4 finds the lamp to 10 degrees": Fact(
+            np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP)), 0, 10, red="recurrence_sign"
         ),
-        "degree 4 is below zero on more than 10 % of the sphere": (
-            float(weights[four < 0].sum() / (4 * np.pi)),
-            0.1,
-            0.5,
+        "degree 4 keeps less than half of the lamp's peak": Fact(
+            peak.max() / shown[0][1].max(), 0.1, 0.5, red="project_summed"
         ),
-        "the sky is nowhere below zero": (float(shown[0][1].min()), 0, 1),
+        "degree 4 is below zero on more than 10 % of the sphere": Fact(
+            weights[four < 0].sum() / (4 * np.pi), 0.1, 0.5, red="start_of_ones"
+        ),
+        "the sky is nowhere below zero": Fact(
+            shown[0][1].min(), 0, 1, held="about the scene alone"
+        ),
     }
     figure, panels = subplots(7.0, 3.1, 2, 3)
     for axes, (title, values) in zip(panels.flat, shown, strict=False):
@@ -121,9 +122,9 @@ def fig3_tangent(module):
         rises.append(module.sh_color(many, v + step) > module.sh_color(many, v))
         drawn.append((module.sh_basis(d @ turn, 3) @ c, arrows @ turn.T))
     facts = {
-        "arrows are tangent": (float(max(parts)), 0, 1e-12),
-        "along each arrow f rises": bool(np.all(rises)),
-        "over 200 arrows": (float(2 * len(at)), 200, 400),
+        "arrows are tangent": Fact(max(parts), 0, 1e-12, red="no_projection"),
+        "along each arrow f rises": Fact(np.all(rises), red="wave_slope_sign"),
+        "over 200 arrows": Fact(2 * len(at), 200, 400, held="about what is drawn"),
     }
     figure, panels = subplots(7.0, 3.3, 1, 2)
     top = max(float(np.abs(values).max()) for values, _ in drawn)
@@ -151,10 +152,14 @@ def fig4_irradiance(module):
         found[degree] = module.probe_irradiance(c, np.zeros((len(normals), 3)), normals)
         errors.append(float(np.abs(found[degree] - brute).max() / mean))
     facts = {
-        "nine coefficients are within 3 % of the mean": (errors[2], 0, 0.03),
-        "degree 1 is more than ten times as far off": (errors[1] / errors[2], 10, 100),
-        "degree 3 adds nothing": (float(np.abs(found[3] - found[2]).max()), 0, 1e-12),
-        "degree 4 comes closer than degree 2": (errors[4] / errors[2], 0, 0.9),
+        "nine coefficients are within 3 % of the mean": Fact(errors[2], 0, 0.03, red="lobe_half"),
+        "degree 1 is more than ten times as far off": Fact(
+            errors[1] / errors[2], 10, 100, red="no_lobe"
+        ),
+        "degree 3 adds nothing": Fact(np.abs(found[3] - found[2]).max(), 0, 1e-12, red="lobe_flat"),
+        "degree 4 comes closer than degree 2": Fact(
+            errors[4] / errors[2], 0, 0.9, red="lobe_no_fourth"
+        ),
     }
     figure, panels = subplots(7.0, 3.3, 2, 3)
     high = float(brute.max()) * 1.05
@@ -228,20 +233,17 @@ def fig5_glyphs(module):
     change = slice_ @ module.sh_basis(ring, 2).T
     strong = np.linalg.norm(slice_, axis=-1) > 0.3 * np.linalg.norm(slice_, axis=-1).max()
     facts = {
-        "cells that face the highlight get brighter towards it": (
-            float((gain > 0).mean()),
-            0.95,
-            1,
+        "cells that face the highlight get brighter towards it": Fact(
+            (gain > 0).mean(), 0.95, 1, red="d_coefficients_without_g"
         ),
-        "more than 80 % of the energy lies in or next to the ball": (
-            float(energy[near].sum() / energy.sum()),
-            0.8,
-            1,
+        "more than 80 % of the energy lies in or next to the ball": Fact(
+            energy[near].sum() / energy.sum(), 0.8, 1, held="the given renderer sees to it"
         ),
-        "most of the larger glyphs have both colors": (
-            float(((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean()),
+        "most of the larger glyphs have both colors": Fact(
+            ((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean(),
             0.6,
             1,
+            red="recurrence_sign",
         ),
     }
     figure, axes = subplots(5.6, 5.2)
@@ -292,15 +294,17 @@ def fig6_coarse_to_fine(module):
     fixed, fine, plain = (runs[name][1] for name in runs)
     cells = module.fit_plenoxels(*first, rays, target, 3, 0)[0].shape
     facts = {
-        "16 cells a side at the end": cells == (16, 16, 16),
-        "coarse to fine ends more than 4 dB above": (fine[-1] - fixed[-1], 4, 20),
-        "the fixed grid fits its own photographs to better than 27 dB": (
-            runs["fixed grid"][3],
-            27,
-            60,
+        "16 cells a side at the end": Fact(cells == (16, 16, 16), held="the checks look at shapes"),
+        "coarse to fine ends more than 4 dB above": Fact(
+            fine[-1] - fixed[-1], 4, 20, red="steps_at_last_level"
         ),
-        "on new views the fixed grid gets worse after its best": (max(fixed) - fixed[-1], 0.5, 10),
-        "degree 0 loses more than 2 dB": (fine[-1] - plain[-1], 2, 20),
+        "the fixed grid fits its own photographs to better than 27 dB": Fact(
+            runs["fixed grid"][3], 27, 60, red="uphill"
+        ),
+        "on new views the fixed grid gets worse after its best": Fact(
+            max(fixed) - fixed[-1], 0.5, 10, red="coefficients_frozen"
+        ),
+        "degree 0 loses more than 2 dB": Fact(fine[-1] - plain[-1], 2, 20, red="coefficients_cut"),
     }
     figure = Figure(figsize=(7.0, 4.0), layout="constrained")
     grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))
@@ -387,21 +391,10 @@ def _ball_scene(module, n, light, second=False):
     return 8 * np.max(inside, axis=0), c
 
 
-def _photographs(views, pixels, twist=0.0, away=3.2, view_angle=0.75):
+def _photographs(views, pixels, twist=0.0):
     """Rays of cameras spread evenly all around, that look at the middle."""
-    height = 1 - (np.arange(views) + 0.5) * 2 / views
-    phi = np.arange(views) * np.pi * (3 - np.sqrt(5)) + 2 * np.pi * twist
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * np.tan(view_angle / 2)
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(away * place, (pixels**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    places = 3.2 * all_around(views, 2 * np.pi * twist)
+    return rays_to_origin(places, pixels, np.tan(0.375))
 
 
 def _dilated(mask):
@@ -416,56 +409,3 @@ def _dilated(mask):
 FIGURES = figures_of(
     fig1_harmonics, fig2_projection, fig3_tangent, fig4_irradiance, fig5_glyphs, fig6_coarse_to_fine
 )
-RED = {
-    "fig1_harmonics": "no_phase",
-    "fig2_projection": "recurrence_sign",
-    "fig3_tangent": "no_projection",
-    "fig4_irradiance": "lobe_flat",
-    "fig5_glyphs": "d_coefficients_without_g",
-    "fig6_coarse_to_fine": "coefficients_frozen",
-}
-# A mutant for each fact.
-RED_FACTS = {
-    "fig1_harmonics": {
-        "l = 1, m = 1 is negative towards +x": "no_phase",
-        "l = 1, m = 0 is positive towards +z": "pole_along_y",
-        "odd degrees change sign at the opposite point, even ones do not": "angle_once",
-        "all but the first have mean zero": "recurrence_sign",
-    },
-    "fig2_projection": {
-        "each degree comes closer": "project_summed",
-        "the mean is kept from the first": "project_mean",
-        "degree 4 finds the lamp to 10 degrees": "recurrence_sign",
-        "degree 4 keeps less than half of the lamp's peak": "project_summed",
-        "degree 4 is below zero on more than 10 % of the sphere": "start_of_ones",
-    },
-    "fig3_tangent": {
-        "arrows are tangent": "no_projection",
-        "along each arrow f rises": "wave_slope_sign",
-    },
-    "fig4_irradiance": {
-        "nine coefficients are within 3 % of the mean": "lobe_half",
-        "degree 1 is more than ten times as far off": "no_lobe",
-        "degree 3 adds nothing": "lobe_flat",
-        "degree 4 comes closer than degree 2": "lobe_no_fourth",
-    },
-    "fig5_glyphs": {
-        "cells that face the highlight get brighter towards it": "d_coefficients_without_g",
-        "most of the larger glyphs have both colors": "recurrence_sign",
-    },
-    "fig6_coarse_to_fine": {
-        "coarse to fine ends more than 4 dB above": "steps_at_last_level",
-        "the fixed grid fits its own photographs to better than 27 dB": "uphill",
-        "on new views the fixed grid gets worse after its best": "coefficients_frozen",
-        "degree 0 loses more than 2 dB": "coefficients_cut",
-    },
-}
-HELD = {
-    "fig1_harmonics": {"degree 0 is the same everywhere": "no known mistake makes it vary"},
-    "fig2_projection": {"the sky is nowhere below zero": "about the scene alone"},
-    "fig3_tangent": {"over 200 arrows": "about what is drawn"},
-    "fig5_glyphs": {
-        "more than 80 % of the energy lies in or next to the ball": "the given renderer sees to it"
-    },
-    "fig6_coarse_to_fine": {"16 cells a side at the end": "the checks look at shapes"},
-}

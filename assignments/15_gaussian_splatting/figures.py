@@ -12,18 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.build.kits import source_folders
-from photograd_course.viz.handout import Array, Facts, figures_of, subplots
+from photograd_course.captures import all_around, look_at_origin, striped_balls
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, subplots
 from photograd_course.viz.style import BLUE, GRAY, ORANGE, plain_axes, signed_color_map
 
 Scene = dict[str, Array]
 Camera = dict[str, object]
 BLACK = np.zeros(3)
 SIZE, VIEWS, MOST, STEPS = 32, 12, 180, 120
-BALLS = (
-    ((-0.3, 0.0, 0.1), 0.5, (0.95, 0.5, 0.35)),
-    ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
-    ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
-)
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
@@ -46,13 +42,11 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     module.MARGIN = kept  # type: ignore[attr-defined]
     held, free = widths
     facts: Facts = {
-        "the points' covariance is cov2d within 6 %": (
-            float(np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0])),
-            0,
-            0.06,
+        "the points' covariance is cov2d within 6 %": Fact(
+            np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0]), 0, 0.06
         ),
-        "held, the width stays": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
-        "not held, it is more than twice as large in the end": (float(free[-1] / held[-1]), 2, 10),
+        "held, the width stays": Fact(held[-1] / held[slopes > limit][0], 0.999, 1.001),
+        "not held, it is more than twice as large in the end": Fact(free[-1] / held[-1], 2, 10),
     }
     figure, (left, right) = subplots(7.0, 3.0, 1, 2)
     left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
@@ -84,12 +78,10 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     left = float(module.composite(alpha, np.zeros((count, 3)), depth, np.ones(3))[0][0, 0])
     order = np.argsort(depth)
     facts: Facts = {
-        "weights and what is left add up to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
-        "the nearest weighs its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
-        "the most opaque one weighs a quarter of the nearest": (
-            float(weights[3] / weights[1]),
-            0.23,
-            0.27,
+        "weights and what is left add up to 1": Fact(weights.sum() + left, 1 - 1e-12, 1 + 1e-12),
+        "the nearest weighs its alpha": Fact(weights[order[0]] - 0.6, -1e-12, 1e-12),
+        "the most opaque one weighs a quarter of the nearest": Fact(
+            weights[3] / weights[1], 0.23, 0.27
         ),
     }
     figure, axes = subplots(7.0, 2.4)
@@ -135,13 +127,11 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         for most in (0, 60)
     ]
     facts: Facts = {
-        "the sum along x is less than 5 % of the sizes": (float(signed[0] / total[0]), 0, 0.05),
-        "pull is the sum of the sizes": (
-            float(total[0] / np.abs(pulls[:, 0]).sum()),
-            1 - 1e-9,
-            1 + 1e-9,
+        "the sum along x is less than 5 % of the sizes": Fact(signed[0] / total[0], 0, 0.05),
+        "pull is the sum of the sizes": Fact(
+            total[0] / np.abs(pulls[:, 0]).sum(), 1 - 1e-9, 1 + 1e-9
         ),
-        "with densify the loss ends below a tenth": (float(curves[1][-1] / curves[0][-1]), 0, 0.1),
+        "with densify the loss ends below a tenth": Fact(curves[1][-1] / curves[0][-1], 0, 0.1),
     }
     figure, (left, right) = subplots(7.0, 2.9, 1, 2)
     left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
@@ -176,10 +166,10 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     new = [_photographs(3, 1.0), [len(scene["means"]) for scene in kept]]
     scores = [_score(module, scene, new[0]) for scene in kept]
     facts: Facts = {
-        "each frame is better than the one before": bool(np.all(np.diff(scores) > 0)),
-        "the last one has more than 26 dB on new views": (scores[-1], 26, 60),
-        "it begins with 80 Gaussians": (float(new[1][0]), 80, 80),
-        "it ends with more than 150": (float(len(found["means"])), 151, MOST),
+        "each frame is better than the one before": Fact(np.all(np.diff(scores) > 0)),
+        "the last one has more than 26 dB on new views": Fact(scores[-1], 26, 60),
+        "it begins with 80 Gaussians": Fact(new[1][0], 80, 80),
+        "it ends with more than 150": Fact(len(found["means"]), 151, MOST),
     }
     figure, panels = subplots(7.0, 1.75, 1, len(marks) + 1)
     for axes, image, step, count, score in zip(panels, shown, marks, new[1], scores, strict=False):
@@ -208,16 +198,12 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     alpha, _ = module.screen_alpha(places, cov2d, scene["opacity_logits"], pixels)
     beneath = alpha @ np.sum(error**2, axis=2).ravel() / np.maximum(alpha.sum(axis=1), 1e-9)
     facts: Facts = {
-        "a small step along all arrows lowers the loss as the gradient says": (
-            float(fall / predicted),
-            0.98,
-            1.02,
+        "a small step along all arrows lowers the loss as the gradient says": Fact(
+            fall / predicted, 0.98, 1.02
         ),
-        "some are chosen, and most are not": (float(chosen.mean()), 0.05, 0.6),
-        "beneath the chosen ones the error is at least 1.5 times that beneath the others": (
-            float(beneath[chosen].mean() / beneath[~chosen].mean()),
-            1.5,
-            50,
+        "some are chosen, and most are not": Fact(chosen.mean(), 0.05, 0.6),
+        "beneath the chosen ones the error is at least 1.5 times that beneath the others": Fact(
+            beneath[chosen].mean() / beneath[~chosen].mean(), 1.5, 50
         ),
     }
     arrows = (
@@ -260,10 +246,10 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     score = _score(module, splats, unseen)
     sizes = [4 * sum(a.size for a in splats.values()), 4 * volume.size, 4 * grid]
     facts: Facts = {
-        "the Gaussians have the most decibels": bool(score > max(score9[0], score11[0])),
-        "and the fewest bytes": bool(sizes[0] < min(sizes[1:])),
-        "10 KiB of them as float32": (sizes[0] / 1024, 9.5, 10.5),
-        "all three have more than 20 dB": (min(score, score9[0], score11[0]), 20, 60),
+        "the Gaussians have the most decibels": Fact(score > max(score9[0], score11[0])),
+        "and the fewest bytes": Fact(sizes[0] < min(sizes[1:])),
+        "10 KiB of them as float32": Fact(sizes[0] / 1024, 9.5, 10.5),
+        "all three have more than 20 dB": Fact(min(score, score9[0], score11[0]), 20, 60),
     }
     camera, truth = views[1]
     shown, back = module.picture(begin, camera, BLACK)
@@ -305,10 +291,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
 
 def _camera(place: Array, size: int) -> Camera:
     """At a place, looking at the origin; y down."""
-    forward = -place / np.linalg.norm(place)
-    side = np.cross(forward, [0.0, 1.0, 0.0])
-    side /= np.linalg.norm(side)
-    W = np.stack([side, np.cross(forward, side), forward])
+    W = look_at_origin(place)[:3, :3].T
     return {
         "camera_from_world": np.concatenate([W, -(W @ place)[:, None]], axis=1),
         "focal": np.full(2, 1.2 * size),
@@ -324,10 +307,7 @@ def _world(camera: Camera, t: Array) -> Array:
 
 
 def _places(count: int, turn: float = 0.0) -> Array:
-    height = 0.8 - 1.2 * (np.arange(count) + 0.5) / count
-    phi = np.arange(count) * 2.399963 + turn
-    ring = np.sqrt(1 - height**2)
-    return 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    return 3.2 * all_around(count, turn, up=1, top=0.8, span=1.2)
 
 
 def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
@@ -341,22 +321,9 @@ def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
 
 def _photograph(camera: Camera) -> Array:
     """Three lit and striped balls before black, nine rays a pixel."""
-    fine = 3
-    eye, d = _rays(camera, fine)
-    image, nearest = np.zeros(d.shape), np.full(d.shape[:2], np.inf)
-    for middle, radius, paint in BALLS:
-        away = np.array(middle) - eye
-        along = d @ away
-        inside = radius**2 - away @ away + along**2
-        t = along - np.sqrt(np.maximum(inside, 0))
-        hit = (inside > 0) & (t < nearest)
-        p = eye + t[hit, None] * d[hit]
-        light = 0.45 + 0.55 * np.maximum((p - middle) @ [0.4, 0.8, 0.45] / radius, 0)
-        stripes = np.where(np.sin(p @ [9.0, 14.0, 5.0]) > 0, 1.0, 0.55)
-        image[hit] = (light * stripes)[:, None] * np.array(paint)
-        nearest[hit] = t[hit]
-    n = len(d) // fine
-    return image.reshape(n, fine, n, fine, 3).mean(axis=(1, 3))
+    image = striped_balls(*_rays(camera, 3), BLACK)
+    n = len(image) // 3
+    return image.reshape(n, 3, n, 3, 3).mean(axis=(1, 3))
 
 
 def _photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:

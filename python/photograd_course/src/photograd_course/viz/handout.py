@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,33 @@ from matplotlib.figure import Figure
 from .style import HANDOUT_DPI, house_style, save_figure
 
 Array = np.ndarray[Any, np.dtype[Any]]
-Fact = bool | tuple[float, float, float]
-"""True or False; or a value, and the interval in which it lies where the fact holds."""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One thing that a caption claims.
+
+    Attributes:
+        value: true or false; or a number, which lies from ``low`` to ``high``.
+        low, high: of a number; NaN lies nowhere.
+        red: a mutant of the assignment under which it does not hold; empty where the figure as a
+            whole names one.
+        held: why no mutant changes it.
+    """
+
+    value: Any
+    low: float | None = None
+    high: float | None = None
+    red: str = ""
+    held: str = ""
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is true."""
+        if self.low is None or self.high is None:
+            return bool(self.value)
+        return bool(self.low <= float(self.value) <= self.high)
+
 
 Facts = dict[str, Fact]
 """What a caption claims, by claim."""
