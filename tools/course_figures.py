@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.assignment.load import load_module
+from photograd_course.assignment.load import load_figure_script
 from photograd_course.build.kits import match_folder, source_folders
 from photograd_course.viz.handout import save_figures
 from photograd_course.viz.style import HANDOUT_DPI
@@ -19,7 +19,7 @@ def main() -> None:
     folders = source_folders()
     for number in sys.argv[1:]:
         folder = folders[match_folder(number, list(folders))]
-        script = load_module("figures", (folder / "figures.py").read_text(encoding="utf-8"))
+        script = load_figure_script(folder)
         dpi = getattr(script, "DPI", HANDOUT_DPI)
         solution = read_folder(folder).reference
         for path in save_figures(script.FIGURES, solution, folder / "figures", dpi):

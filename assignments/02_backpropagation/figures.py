@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import math
-
+import figure_parts as parts
 import numpy as np
-from matplotlib.patches import FancyArrowPatch
+from figure_parts import SMALL
 from photograd_course.viz.handout import Fact, figures_of
 from photograd_course.viz.style import (
     BLUE,
@@ -23,75 +22,6 @@ from photograd_course.viz.style import (
 from photograd_course.viz.style import RED as DARK_RED
 
 WIDTH = 6.6  # inches: 726 pixels
-TEXT = 9.0  # points: 11 pixels where the figure is shown 600 pixels wide
-SMALL = 8.5
-
-
-def graph_axes(figure, left, top, width, height):
-    """Axes without frame; one unit is one inch, y downwards."""
-    axes = place_axes(figure, left, top, width, height)
-    axes.set(xlim=(0, width), ylim=(height, 0))
-    axes.axis("off")
-    return axes
-
-
-def circle(axes, at, label, value="", gradient=""):
-    """A node: what it is inside, its value above and its gradient below."""
-    box = {"boxstyle": "circle,pad=0.35", "fc": "white", "ec": INK, "lw": 1.4}
-    axes.text(*at, label, ha="center", va="center", fontsize=TEXT + 1.5, zorder=4, bbox=box)
-    bold = {"ha": "center", "fontsize": TEXT, "fontweight": "bold"}
-    axes.text(at[0], at[1] - 0.27, value, va="bottom", color=BLUE, **bold)
-    axes.text(at[0], at[1] + 0.27, gradient, va="top", color=ORANGE, **bold)
-
-
-def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
-    """An arrow from an input to its user, with a text beside it."""
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            connectionstyle=f"arc3,rad={bend}",
-            arrowstyle="-|>",
-            mutation_scale=10,
-            shrinkA=13,
-            shrinkB=13,
-            lw=1.1,
-            color=color,
-            zorder=1,
-        )
-    )
-    if label:
-        x = start[0] + where * (end[0] - start[0])
-        # The middle of an arc lies half its bend to the side of the chord (y points down).
-        y = start[1] + where * (end[1] - start[1]) - bend * 0.5 * (end[0] - start[0]) + lift
-        axes.text(
-            x,
-            y,
-            label,
-            ha="center",
-            va="center",
-            fontsize=SMALL,
-            color=color,
-            bbox={"fc": "white", "ec": "none", "pad": 0.6},
-            zorder=2,
-        )
-
-
-def key(axes, x, y):
-    """Which number is which."""
-    axes.text(x, y, "value", color=BLUE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.22, "gradient", color=ORANGE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.44, "× slope", color=FRAME, fontsize=TEXT)
-
-
-def slopes_of(user, source):
-    """Slopes noted by `user` for each of its uses of `source`."""
-    return [slope for node, slope in user.inputs if node is source]
-
-
-def first_slope(user, source):
-    found = slopes_of(user, source)
-    return found[0] if found else math.nan
 
 
 def fig1_worked_graph(module):
@@ -103,13 +33,13 @@ def fig1_worked_graph(module):
     nodes = {"x": x, "y": y, "z": z, "+": a, "×": f}
     at = {"x": (0.9, 0.55), "y": (0.9, 1.75), "+": (2.9, 1.15), "z": (2.9, 2.3), "×": (4.9, 1.65)}
     figure = new_figure(WIDTH, 2.85)
-    axes = graph_axes(figure, 0, 0, WIDTH, 2.85)
+    axes = parts.graph_axes(figure, 0, 0, WIDTH, 2.85)
     for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
-        slope = first_slope(nodes[end], nodes[start])
-        arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
+        slope = parts.first_slope(nodes[end], nodes[start])
+        parts.arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
     for name, node in nodes.items():
-        circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
-    key(axes, 5.7, 0.45)
+        parts.circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
+    parts.key(axes, 5.7, 0.45)
     facts = {
         "the value is 35": Fact(f.data, 35.0, 35.0),
         "the sum is 7 and its gradient 5": Fact(a.data == 7.0 and a.grad == 5.0),
@@ -119,18 +49,12 @@ def fig1_worked_graph(module):
     return figure, facts
 
 
-def recorded_uses(module, root):
-    """How many contributions `backward` adds up, and how many values there are."""
-    order = module.topo_order(root)
-    return sum(len(node.inputs) for node in order), len(order)
-
-
 def fig2_cost(module):
     """Work for one gradient: against the number of inputs, and against the number of paths."""
     counts, backward, forward = [1, 4, 16, 64, 256], [], []
     for n in counts:
         root = sum((module.Value(0.1 * k) * 0.5 + 0.3) ** 2 for k in range(n))
-        uses, gates = recorded_uses(module, root)
+        uses, gates = parts.recorded_uses(module, root)
         backward.append(uses)
         forward.append(gates)
     ladder, paths, rungs = [], [], [1, 2, 4, 6, 8, 10, 12]
@@ -138,7 +62,7 @@ def fig2_cost(module):
         bottom = module.Value(1.0)
         for _ in range(k):
             bottom = bottom**0.5 + bottom**0.25
-        ladder.append(recorded_uses(module, bottom)[0])
+        ladder.append(parts.recorded_uses(module, bottom)[0])
         paths.append(2**k)
     share = np.array(backward) / np.array(forward)
     figure = new_figure(WIDTH, 2.9)
@@ -218,17 +142,6 @@ def fig3_kink(module):
     return figure, facts
 
 
-def levels(root):
-    """Level by level from the root: the order that is not good enough, root last."""
-    order, seen = [root], {root}
-    for node in order:
-        for source, _ in node.inputs:
-            if source not in seen:
-                seen.add(source)
-                order.append(source)
-    return order[::-1]
-
-
 def fig4_order(module):
     """One graph, visited level by level and in the engine's order."""
     x = module.Value(2.0)
@@ -238,7 +151,7 @@ def fig4_order(module):
     f = b + a
     nodes = {"x": x, "a": a, "c": c, "b": b, "f": f}
     own, gradients, ranks = module.topo_order, {}, {}
-    for name, order in (("level by level", levels), ("every user first", own)):
+    for name, order in (("level by level", parts.levels), ("every user first", own)):
         module.topo_order = order
         try:
             module.backward(f)
@@ -252,7 +165,7 @@ def fig4_order(module):
     right = ((2 + h) ** 8 + (2 + h) ** 2 - (2 - h) ** 8 - (2 - h) ** 2) / (2 * h)
     figure = new_figure(WIDTH, 2.25)
     for left, name in ((0.0, "level by level"), (3.3, "every user first")):
-        _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
+        parts.draw_order(parts.graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
         "the engine's gradient agrees with differences": Fact(
@@ -269,31 +182,16 @@ def fig4_order(module):
     return figure, facts
 
 
-def _draw_order(axes, name, uses, ranks, gradients):
-    at = {"x": (0.4, 1.55), "a": (1.02, 1.55), "c": (1.65, 0.9), "b": (2.27, 0.9), "f": (2.9, 1.55)}
-    made = {"x": "x = 2", "a": "a = x²", "c": "c = a²", "b": "b = c²", "f": "b + a"}
-    rank = ranks[name]
-    axes.text(1.65, 0.2, name, ha="center", fontsize=TEXT + 1)
-    for start, end in uses:
-        late = rank[end] > rank[start]
-        arrow(axes, at[start], at[end], color=DARK_RED if late else FRAME)
-        if late:
-            axes.text(1.16, 1.12, "late", ha="right", fontsize=SMALL, color=DARK_RED)
-    for key_, place in at.items():
-        circle(axes, place, f"{rank[key_]}", "", f"{gradients[name][key_]:g}")
-        axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
-
-
 def fig5_uses_add_up(module):
     """(x + y) + x x: three uses of x, and the tangents of their sums."""
     x, y = module.Value(5.0), module.Value(4.0)
     total, square = x + y, x * x
     f = total + square
     module.backward(f)
-    by_sum = sum(slopes_of(total, x)) * total.grad
-    by_square = [slope * square.grad for slope in slopes_of(square, x)]
+    by_sum = sum(parts.slopes_of(total, x)) * total.grad
+    by_square = [slope * square.grad for slope in parts.slopes_of(square, x)]
     figure = new_figure(WIDTH, 2.7)
-    axes = graph_axes(figure, 0, 0, 3.5, 2.7)
+    axes = parts.graph_axes(figure, 0, 0, 3.5, 2.7)
     places = {
         "x": (0.55, 0.95),
         "y": (0.55, 2.2),
@@ -301,15 +199,17 @@ def fig5_uses_add_up(module):
         "×": (1.75, 0.6),
         "f": (3.0, 1.2),
     }
-    arrow(axes, places["y"], places["+"])
-    arrow(axes, places["+"], places["f"])
-    arrow(axes, places["×"], places["f"])
-    arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
+    parts.arrow(axes, places["y"], places["+"])
+    parts.arrow(axes, places["+"], places["f"])
+    parts.arrow(axes, places["×"], places["f"])
+    parts.arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
     for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-        arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0)
+        parts.arrow(
+            axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0
+        )
     for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
         label = "+" if name == "f" else name
-        circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
+        parts.circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
     plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
     h = np.linspace(-2.0, 2.0, 41)
     plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
@@ -381,17 +281,6 @@ def fig6_steps(module):
     return figure, facts
 
 
-def blurred(texels):
-    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
-    rows = []
-    for row in texels:
-        padded = [row[0], *row, row[-1]]
-        rows.append(
-            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
-        )
-    return rows
-
-
 def fig7_picture(module):
     """The gradient of a picture's error, drawn as a picture."""
     row, column = np.mgrid[0:12, 0:16]
@@ -400,7 +289,7 @@ def fig7_picture(module):
 
     def loss_of(numbers):
         leaves = [[module.Value(t) for t in line] for line in numbers]
-        seen = blurred(leaves)
+        seen = parts.blurred(leaves)
         loss = module.Value(0.0)
         for line, wanted in zip(seen, target, strict=True):
             for value, want in zip(line, wanted, strict=True):

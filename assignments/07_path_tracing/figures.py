@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import UP
 from matplotlib.figure import Figure
 from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
-UP = np.array([0.0, 1.0, 0.0])
 GAMMA = 1 / 2.2
 
 
@@ -32,7 +33,7 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         ours.append(weights @ (cosine / np.where(pdf > 0, pdf, 1)))
         by_area.append(weights @ cosine)
         no_cosine.append(weights @ (cosine / distance**2))
-        right.append(_irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
+        right.append(parts.irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
     ours, by_area, no_cosine, right = (np.array(e) for e in (ours, by_area, no_cosine, right))
     facts: Facts = {
         "dots on the line": Fact(np.abs(ours / right - 1).max(), 0.0, 1e-6),
@@ -76,7 +77,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     rng = np.random.default_rng(3)
     many = module.repeated(module.some(hit, on), samples)
     u = rng.random((2, len(many["thing"]), 3))
-    pictures = [*_alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
+    pictures = [*parts.alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
     pictures = [p[:, 0].reshape(-1, samples) for p in pictures]
     strip = hit["thing"][on]
     # Of a sample from its pixel, over the strip's brightness, both as root mean squares: dark
@@ -137,7 +138,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
         seen = module.trace_paths(scene, *many, depth, rng)
         pictures.append(seen.reshape(height * width, -1, 3).mean(axis=1))
     albedo, depths = 0.6, np.arange(1, 8)
-    room, origins, directions = _furnace(module, albedo, 700, rng)
+    room, origins, directions = parts.furnace(module, albedo, 700, rng)
     means, errors, double = [], [], []
     for depth in depths:
         seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
@@ -174,7 +175,7 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     """Mean, surfaces visited and price, with roulette and without."""
     albedo, depths = 0.4, np.array([2, 4, 8, 12])
     rng = np.random.default_rng(5)
-    room, origins, directions = _furnace(module, albedo, 2500, rng)
+    room, origins, directions = parts.furnace(module, albedo, 2500, rng)
     see, always = module.see, module.ALWAYS
     means, visits, prices = [], [], []
     for limit in (always, 99):
@@ -249,11 +250,13 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
         ]
         ours.append(sum(parts))
         errors.append(float(np.std(parts) * np.sqrt(15)))
-        wrong.append(ours[-1] + _through_density(module, scene, hit, u[1], value))
-        ends = [_fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)]
+        wrong.append(ours[-1] + parts.through_density(module, scene, hit, u[1], value))
+        ends = [
+            parts.fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)
+        ]
         right.append((ends[0] - ends[1]) / 2e-3)
     ours, wrong, right, errors = (np.array(each) for each in (ours, wrong, right, errors))
-    tracks = [_descent(module, shared) for shared in (False, True)]
+    tracks = [parts.descent(module, shared) for shared in (False, True)]
     facts: Facts = {
         "dots on the line": Fact((np.abs(ours - right) / errors).max(), 0.0, 4.5),
         "crosses are not": Fact((np.abs(wrong - right) / errors).max(), 6.0, 1e4),
@@ -295,8 +298,8 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     exact = np.array([0.8, 0.5, 0.2, 0.35])
     found = np.append(color, rough)
     facts: Facts = {
-        "your picture is the core's": Fact(_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
-        "your gradient is the core's": Fact(_apart(mine, slope), 0.0, 0.35),
+        "your picture is the core's": Fact(parts.apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your gradient is the core's": Fact(parts.apart(mine, slope), 0.0, 0.35),
         "base color found within 0.02": Fact(np.abs(found - exact)[:3].max(), 0.0, 0.02),
         "roughness found within 0.02": Fact(abs(found - exact)[3], 0.0, 0.02),
         "the core as well": Fact(np.abs(core - exact).max(), 0.0, 0.02),
@@ -325,114 +328,6 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 _SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
-
-
-def _irradiance(corners: Array) -> float:
-    """Lambert's formula, of a surface at the origin that faces up."""
-    d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
-    total = np.zeros(3)
-    for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
-        c = np.cross(a, b)
-        total += np.arctan2(np.linalg.norm(c), a @ b) * c / np.linalg.norm(c)
-    return float(abs(total @ UP) / 2)
-
-
-def _alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
-    """Direct light by one strategy alone, with weight 1: by lamps, by the material."""
-    found = []
-    for by_lamp in (True, False):
-        if by_lamp:
-            wi, _, lamp = module.sample_light(scene, hit["points"], u_light)
-        else:
-            wi = module.sample_brdf(scene, hit, u_surface)
-        there = module.see(scene, hit["points"], wi)
-        if by_lamp:
-            p = module.light_pdf(scene, there["thing"], wi, there["t"])
-            p = np.where(there["thing"] == lamp, p, 0.0)
-        else:
-            p = module.brdf_pdf(scene, hit, wi)
-        c = np.maximum(module.dot(wi, hit["normals"]), 0) / np.where(p > 0, p, np.inf)
-        found.append(module.brdf(scene, hit, wi) * module.emitted(scene, there) * c[:, None])
-    return found
-
-
-def _furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
-    """(scene, origins, directions): a closed cube that shines, and rays inside."""
-    faces = (
-        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
-        ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
-        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)),
-        ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
-        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)),
-        ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
-    )
-    scene = module.assemble([module.rectangle(*f, emission=1.0, base_color=albedo) for f in faces])
-    d = rng.normal(size=(n, 3))
-    return scene, np.zeros((n, 3)), d / np.linalg.norm(d, axis=1, keepdims=True)
-
-
-def _fine(module: ModuleType, scene: dict, place: dict) -> float:
-    """Mean of the channels of direct light from the one lamp, by a fine sum over it."""
-    x, w = np.polynomial.legendre.leggauss(24)
-    u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
-    hit = module.repeated(place, u.size)
-    u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
-    wi, far, _ = module.sample_light(scene, hit["points"], u3)
-    normal = module.front_normals(scene)[1]
-    area = float(np.linalg.norm(np.cross(scene["edges_u"][1], scene["edges_v"][1])))
-    light = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
-    return float((light @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
-
-
-def _through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
-    """What is added where the density of the material is differentiated, too."""
-    wi = module.sample_brdf(scene, hit, u)
-    there = module.see(scene, hit["points"], wi)
-    p = module.light_pdf(scene, there["thing"], wi, there["t"])
-    q = module.brdf_pdf(scene, hit, wi)
-    near = module.brdf_pdf(module.demo_table(roughness=value + 1e-4), hit, wi)
-    c = module.mis_weight(q, p) * np.maximum(module.dot(wi, hit["normals"]), 0)
-    value_of = module.brdf(scene, hit, wi) * module.emitted(scene, there)
-    return float(
-        -(value_of.mean(axis=1) * c / np.where(q > 0, q, 1) ** 2 * (near - q) / 1e-4).mean()
-    )
-
-
-def _descent(module: ModuleType, shared: bool) -> Array:
-    """A matte base color by plain descent, one sample a pixel, 110 steps."""
-    lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
-    floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
-    scene = module.assemble([floor, lamp])
-    rng = np.random.default_rng(8)
-    n = 40
-    points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
-    hit = {
-        "points": points,
-        "normals": np.tile(UP, (n, 1)),
-        "wo": np.tile(UP, (n, 1)),
-        "front": np.ones(n, bool),
-        "t": np.ones(n),
-        "thing": np.zeros(n, int),
-    }
-    many = module.repeated(hit, 144)
-    x = (np.arange(12) + 0.5) / 12
-    even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)
-    wi, far, _ = module.sample_light(scene, many["points"], np.tile(even, (n, 1)))
-    light = (wi @ UP) ** 2 * 2.4**2 / far**2
-    picture = 0.6 / np.pi * light.reshape(n, 144).mean(axis=1)
-    track = []
-    for _ in range(110):
-        u = rng.random((4, n, 3))
-        residual = module.direct_light(scene, hit, u[0], u[1]) - picture[:, None]
-        which = u[:2] if shared else u[2:]
-        slope, _ = module.direct_light_backward(scene, hit, *which, 2 * residual / n)
-        scene["base_color"][0] = np.clip(scene["base_color"][0] - 0.15 * slope[0].mean(), 0, 1)
-        track.append(scene["base_color"][0, 0])
-    return np.array(track)
-
-
-def _apart(a: Array, b: Array) -> float:
-    return float(np.linalg.norm(a - b) / np.linalg.norm(b))
 
 
 FIGURES = figures_of(

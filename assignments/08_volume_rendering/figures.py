@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import ADDED, LEFT_OUT, NO_EXP, NO_STEP, OWN_LIGHT, STEPS, TAKES_IN
 from matplotlib.figure import Figure
-from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.handout import Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
-
-STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
-# The mistakes of figure 4, in the words of its caption.
-LEFT_OUT, ADDED, NO_STEP = "hidden part left out", "hidden part added", "without dt"
-OWN_LIGHT, NO_EXP = "own light among the hidden", "σ dt for opacity"
-TAKES_IN = "T takes in the step"
 
 
 def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
     """Extinction, transmittance and weights along a ray through two clouds."""
-    x, sigma, dt = _two_clouds()
-    w, T_end = _weights(module, sigma, dt)
+    x, sigma, dt = parts.two_clouds()
+    w, T_end = parts.weights(module, sigma, dt)
     # Transmittance in front of each step: T_end of the ray that ends there.
-    T = np.array([_T_end(module, sigma[:k], dt[:k]) for k in range(1, STEPS + 1)])
+    T = np.array([parts.end_of(module, sigma[:k], dt[:k]) for k in range(1, STEPS + 1)])
     T = np.concatenate([[1.0], T])
     thin, dense = x < 3, x > 3
     front = dense & (x < 4.5)
@@ -59,20 +55,32 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
     """Error of the pixel against the number of steps, for four ways to weigh a step."""
     counts = 2 ** np.arange(3, 10)
     fine = 8192
-    right = _cloud_pixel(lambda s, c, dt: _pixel(module, s, c, dt), fine)
+    right = parts.cloud_pixel(lambda s, c, dt: parts.pixel_of(module, s, c, dt), fine)
     ways = {
-        "T α, equation (7)": (lambda s, c, dt: _pixel(module, s, c, dt), BLUE, "-", "o"),
-        "T σ dt": (lambda s, c, dt: np.sum(_T(s * dt) * s * dt * c), ORANGE, "--", "s"),
+        "T α, equation (7)": (lambda s, c, dt: parts.pixel_of(module, s, c, dt), BLUE, "-", "o"),
+        "T σ dt": (
+            lambda s, c, dt: np.sum(parts.transmittance(s * dt) * s * dt * c),
+            ORANGE,
+            "--",
+            "s",
+        ),
         "T inclusive, times α": (
-            lambda s, c, dt: np.sum(_T(s * dt) * np.exp(-s * dt) * -np.expm1(-s * dt) * c),
+            lambda s, c, dt: np.sum(
+                parts.transmittance(s * dt) * np.exp(-s * dt) * -np.expm1(-s * dt) * c
+            ),
             GRAY,
             "-.",
             "^",
         ),
-        "T σ, without dt": (lambda s, c, dt: np.sum(_T(s * dt) * s * c), CRIMSON, ":", "v"),
+        "T σ, without dt": (
+            lambda s, c, dt: np.sum(parts.transmittance(s * dt) * s * c),
+            CRIMSON,
+            ":",
+            "v",
+        ),
     }
     errors = {
-        name: np.array([abs(_cloud_pixel(way[0], int(n)) - right) / right for n in counts])
+        name: np.array([abs(parts.cloud_pixel(way[0], int(n)) - right) / right for n in counts])
         for name, way in ways.items()
     }
     names = list(ways)
@@ -114,7 +122,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
 
 def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     """The derivative of a pixel by extinction along the ray of figure 1, in its two parts."""
-    x, sigma, dt = _two_clouds()
+    x, sigma, dt = parts.two_clouds()
     color = np.where(x < 3, 0.1, 0.95 - 0.12 * (x - 3))
     background = np.array([0.3])
     given = (sigma[None], color[None, :, None], dt[None], background)
@@ -132,7 +140,7 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         )
         own[k] = black[0][0, k]
     hidden = d_sigma - own
-    differences = _differences(module, *given)
+    differences = parts.differences(module, *given)
     dark, bright = (sigma > 0.05) & (x < 3), (sigma > 0.05) & (x > 3)
     error = np.linalg.norm(d_sigma - differences) / np.linalg.norm(differences)
     facts: Facts = {
@@ -146,12 +154,12 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         "a step never shows less of itself": Fact(own.min(), 0, 1, red="adjoint_sign"),
         "what is hidden counts minus": Fact(hidden.max(), -10, 0, red="adjoint_occlusion_added"),
         "weights sum to 1 - T_end": Fact(
-            w.sum() + _T_end(module, sigma, dt), 1 - 1e-9, 1 + 1e-9, red="adjoint_color_no_T"
+            w.sum() + parts.end_of(module, sigma, dt), 1 - 1e-9, 1 + 1e-9, red="adjoint_color_no_T"
         ),
     }
     figure, axes = subplots(7.0, 3.0)
-    axes.axvspan(*_reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
-    axes.axvspan(*_reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
+    axes.axvspan(*parts.reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
+    axes.axvspan(*parts.reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
     axes.axhline(0, color=FRAME, linewidth=0.8)
     axes.plot(x, own, color=BLUE, linestyle="--")
     axes.plot(x, hidden, color=ORANGE, linestyle="-.")
@@ -181,9 +189,9 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     d_pixel = rng.uniform(-1, 1, (rays, 3))
     right = module.composite_adjoint(sigma, color, dt, background, d_pixel, np.zeros(rays))[0]
     few = slice(0, 4)
-    checked = _differences(module, sigma[few], color[few], dt[few], background, d_pixel[few])
+    checked = parts.differences(module, sigma[few], color[few], dt[few], background, d_pixel[few])
     found = {
-        name: _wrong(name, sigma, color, length, background, d_pixel)
+        name: parts.wrong(name, sigma, color, length, background, d_pixel)
         for name in (LEFT_OUT, ADDED, NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     }
     error = {k: float(np.linalg.norm(v - right) / np.linalg.norm(right)) for k, v in found.items()}
@@ -298,7 +306,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
 def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     """A photographed volume, a wrong guess, and the derivative of their difference by sigma."""
     shape, low, high = (24, 24, 24), -np.ones(3), np.ones(3)
-    truth, guess, parts = _ball_and_ring(shape)
+    truth, guess, pieces = parts.ball_and_ring(shape)
     pixels = 60
     side = (np.arange(pixels) + 0.5) / pixels * 2 - 1
     y, x = np.meshgrid(-side, side, indexing="ij")
@@ -310,8 +318,8 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     d_pixel = 2 / len(seen) * (seen - photograph)
     d_grid, _ = module.render_adjoint(guess, *view, d_pixel)
     slope = d_grid[..., 3]
-    ball, ring, other = parts
-    nowhere = ~_grown(ball | ring | other)
+    ball, ring, other = pieces
+    nowhere = ~parts.grown(ball | ring | other)
     lacking, excess = slope[ring], slope[other]
     columns = slope.sum(axis=2).T[::-1]
     facts: Facts = {
@@ -354,113 +362,6 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
     bar.set_ticklabels(["−1\nadd σ", "0", "take σ\naway  1"])
     return figure, facts
-
-
-def _two_clouds() -> tuple[Array, Array, Array]:
-    """Middles, extinctions and lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
-    dt = np.full(STEPS, 6.0 / STEPS)
-    x = np.cumsum(dt) - dt / 2
-    bump = [np.clip(1 - ((x - middle) / 1.0) ** 2, 0, None) for middle in (1.5, 4.5)]
-    return x, 0.6 * bump[0] + 2.4 * bump[1], dt
-
-
-def _weights(module: ModuleType, sigma: Array, dt: Array) -> tuple[Array, float]:
-    """Weights of a ray's steps, by giving each step a channel of its own; T_end."""
-    steps = len(sigma)
-    pixel, T_end = module.composite(sigma[None], np.eye(steps)[None], dt[None], np.zeros(steps))
-    return pixel[0], float(T_end[0])
-
-
-def _T_end(module: ModuleType, sigma: Array, dt: Array) -> float:
-    color = np.zeros((1, len(sigma), 1))
-    return float(module.composite(sigma[None], color, dt[None], np.zeros(1))[1][0])
-
-
-def _pixel(module: ModuleType, sigma: Array, color: Array, dt: float) -> float:
-    given = (sigma[None], color[None, :, None], np.full((1, len(sigma)), dt), np.zeros(1))
-    return float(module.composite(*given)[0][0, 0])
-
-
-def _T(s: Array) -> Array:
-    """Transmittance in front of steps of the given optical depths."""
-    return np.exp(-np.concatenate([[0.0], np.cumsum(s)[:-1]]))
-
-
-def _cloud_pixel(way: object, n: int) -> float:
-    """The pixel of a smooth cloud of changing color by one way to weigh its steps."""
-    x = (np.arange(n) + 0.5) / n
-    sigma = 3 * np.exp(-(((x - 0.4) / 0.3) ** 2))
-    return float(way(sigma, 0.6 + 0.4 * np.sin(4 * x), 1 / n))  # type: ignore[operator]
-
-
-def _differences(
-    module: ModuleType,
-    sigma: Array,
-    color: Array,
-    dt: Array,
-    background: Array,
-    d_pixel: Array | None = None,
-) -> Array:
-    """Central differences of <pixel, d_pixel> by each extinction; of one ray without its axis."""
-    d = np.ones((len(sigma), color.shape[2])) if d_pixel is None else d_pixel
-    result = np.zeros(sigma.shape)
-    for k in range(sigma.shape[1]):
-        ends = []
-        for sign in (1, -1):
-            moved = sigma.copy()
-            moved[:, k] += sign * 1e-5
-            ends.append(np.sum(module.composite(moved, color, dt, background)[0] * d, axis=1))
-        result[:, k] = (ends[0] - ends[1]) / 2e-5
-    return result[0] if d_pixel is None else result
-
-
-def _wrong(
-    name: str, sigma: Array, color: Array, dt: float, background: Array, d_pixel: Array
-) -> Array:
-    """d_sigma with one mistake."""
-    s = sigma * dt
-    T = np.exp(-np.concatenate([np.zeros((len(s), 1)), np.cumsum(s, axis=1)], axis=1))
-    front = T[:, 1:] if name == TAKES_IN else T[:, :-1]
-    light = front * -np.expm1(-s) * np.einsum("rsc,rc->rs", color, d_pixel)
-    end = T[:, -1:] * (d_pixel @ background)[:, None]
-    rest = np.concatenate([light, end], axis=1)[:, ::-1].cumsum(axis=1)[:, ::-1]
-    hidden = rest[:, :-1] if name == OWN_LIGHT else rest[:, 1:]
-    slope = T[:, :-1] if name == NO_EXP else T[:, 1:]
-    own = slope * np.einsum("rsc,rc->rs", color, d_pixel)
-    if name == LEFT_OUT:
-        return dt * own
-    if name == ADDED:
-        return dt * (own + hidden)
-    return (own - hidden) * (1.0 if name == NO_STEP else dt)
-
-
-def _ball_and_ring(shape: tuple[int, int, int]) -> tuple[Array, Array, list[Array]]:
-    """(truth, guess, masks): a ball and a ring; the guess has a second ball and no ring."""
-    axes = [(np.arange(n) + 0.5) / n * 2 - 1 for n in shape]
-    x, y, z = np.meshgrid(*axes, indexing="ij")
-    ball = (x + 0.15) ** 2 + (y + 0.1) ** 2 + z**2 < 0.3**2
-    ring = (np.hypot(x + 0.15, y + 0.1) - 0.6) ** 2 + z**2 < 0.13**2
-    other = (x - 0.72) ** 2 + (y - 0.7) ** 2 + z**2 < 0.2**2
-    truth, guess = np.zeros((*shape, 4)), np.zeros((*shape, 4))
-    for volume in (truth, guess):
-        volume[..., :3] = (0.9, 0.75, 0.45)
-        volume[ball, 3] = 8.0
-    truth[ring, 3] = 6.0
-    guess[other, 3] = 6.0
-    return truth, guess, [ball, ring, other]
-
-
-def _grown(mask: Array) -> Array:
-    """The mask and all voxels within two of it, whole columns along z."""
-    flat = mask.any(axis=2)
-    for _ in range(2):
-        wide = np.pad(flat, 1)
-        flat = wide[:-2, 1:-1] | wide[2:, 1:-1] | wide[1:-1, :-2] | wide[1:-1, 2:] | flat
-    return np.repeat(flat[:, :, None], mask.shape[2], axis=2)
-
-
-def _reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:
-    return float(x[mask].min() - dt[0] / 2), float(x[mask].max() + dt[0] / 2)
 
 
 FIGURES = figures_of(fig1_ray, fig2_order, fig3_adjoint, fig4_wrong, fig5_box, fig6_view)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
@@ -16,12 +16,12 @@ from photograd_course.viz.style import RED as CRIMSON
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
     """The derivative of a loss by the extinction of a step that is not there, by its color."""
     colors = np.linspace(0, 1, 21)
-    slopes = np.array([_gap(module, 0.0, c)[1][3] for c in colors])
-    by_color = np.array([np.abs(_gap(module, 0.0, c)[1][:3]).max() for c in colors])
-    apart = [(_gap(module, 1e-6, c)[0] - _gap(module, 0.0, c)[0]) / 1e-6 for c in colors]
+    slopes = np.array([parts.gap(module, 0.0, c)[1][3] for c in colors])
+    by_color = np.array([np.abs(parts.gap(module, 0.0, c)[1][:3]).max() for c in colors])
+    apart = [(parts.gap(module, 1e-6, c)[0] - parts.gap(module, 0.0, c)[0]) / 1e-6 for c in colors]
     behind = 0.8 * -np.expm1(-1.0)
     sigma = np.linspace(0, 6, 61)
-    curves = {c: np.array([_gap(module, s, c)[0] for s in sigma]) for c in (0.9, 0.3)}
+    curves = {c: np.array([parts.gap(module, s, c)[0] for s in sigma]) for c in (0.9, 0.3)}
     crossing = float(np.interp(0, slopes[::-1], colors[::-1]))
     facts: Facts = {
         "the derivative changes its sign at the color seen behind": Fact(
@@ -55,9 +55,9 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
 def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
     """The leaves of an octree in a slice; nodes by resolution."""
     n = 32
-    tree = module.octree_from_dense(_shell(n))
+    tree = module.octree_from_dense(parts.shell(n))
     sizes = np.array([4, 8, 16, 32])
-    shells = np.array([len(module.octree_from_dense(_shell(k))) for k in sizes])
+    shells = np.array([len(module.octree_from_dense(parts.shell(k))) for k in sizes])
     ones = []
     for k in sizes:
         one = np.zeros((k, k, k), bool)
@@ -78,7 +78,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
         "two halves are eight leaves": Fact(half == 9, red="octree_full_cut"),
     }
     figure, (left, right) = subplots(7.0, 3.3, 1, 2)
-    for low, side, full in _leaves_in_slice(module, tree, n, n // 2):
+    for low, side, full in parts.leaves_in_slice(module, tree, n, n // 2):
         left.add_patch(
             Rectangle(
                 low, side, side, facecolor=ORANGE if full else "white", edgecolor=INK, linewidth=0.4
@@ -104,7 +104,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
 def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     """Rays through a slice of the tree: which samples are read, where leaves are asked for."""
     n, count = 32, 64
-    full = _shell(n)
+    full = parts.shell(n)
     tree = module.octree_from_dense(full)
     height = np.array([3.3, 9.7, 16.4, 24.1])
     first = np.stack([np.full(4, 0.27), height, np.full(4, n / 2 + 0.5)], axis=1)
@@ -133,7 +133,7 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
         ),
     }
     figure, axes = subplots(7.0, 4.1)
-    for low, side, is_full in _leaves_in_slice(module, tree, n, n // 2):
+    for low, side, is_full in parts.leaves_in_slice(module, tree, n, n // 2):
         axes.add_patch(
             Rectangle(
                 low,
@@ -166,7 +166,7 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
     loads = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9])
     found, missing = [], []
     for load in loads:
-        looks = [_looks(module, rng, slots, int(load * slots)) for _ in range(3)]
+        looks = [parts.looks(module, rng, slots, int(load * slots)) for _ in range(3)]
         found.append(np.mean([each[0] for each in looks]))
         missing.append(np.mean([each[1] for each in looks]))
     theory = (1 + 1 / (1 - loads)) / 2, (1 + 1 / (1 - loads) ** 2) / 2
@@ -202,13 +202,13 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
 def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     """The derivative by extinction where voxels are, and what it would be where there are none."""
     n = 16
-    voxels, values = _object(n)
-    rays = _cameras(12, 10)
-    target = module.render(values, _samples(module, n, voxels, rays))
+    voxels, values = parts.ball_and_ring(n)
+    rays = parts.cameras(12, 10)
+    target = module.render(values, parts.samples_of(module, n, voxels, rays))
     # The guess lacks the ring: only the ball was kept.
     ball = values[:, 0] > 0.6
     some, kept = voxels[ball], values[ball]
-    samples = _samples(module, n, some, rays)
+    samples = parts.samples_of(module, n, some, rays)
     before = module.render(kept, samples)
     _, d_kept = module.loss_and_grad(kept, samples, target)
     every = np.argwhere(np.ones((n, n, n), bool))
@@ -218,7 +218,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     far = np.ones(n**3, bool)
     far[beside @ np.array([n * n, n, 1])] = False
     maps, pictures = [], []
-    whole = _samples(module, n, every, rays)
+    whole = parts.samples_of(module, n, every, rays)
     for gray in (0.9, 0.0):
         dense = np.zeros((n**3, 4))
         dense[far, :3] = gray
@@ -266,10 +266,10 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
 def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     """What is pruned too early is lost; what is left may grow."""
     n, total, threshold = 8, 24, 0.06
-    voxels, values = _rods(16)
-    rays, unseen, shown = _cameras(10, 6), _cameras(6, 8, 1.0), _cameras(3, 40, 0.5)
+    voxels, values = parts.rods_of(16)
+    rays, unseen, shown = parts.cameras(10, 6), parts.cameras(6, 8, 1.0), parts.cameras(3, 40, 0.5)
     target, truth = (
-        module.render(values, _samples(module, 16, voxels, each)) for each in (rays, unseen)
+        module.render(values, parts.samples_of(module, 16, voxels, each)) for each in (rays, unseen)
     )
     every = np.argwhere(np.ones((n, n, n), bool))
     start = np.tile(module.START, (len(every), 1))
@@ -282,9 +282,9 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
                 n, every, start, rays, target, total // steps, steps, threshold, grow
             )
             kept[grow, steps] = found
-            scores[grow].append(_decibels(_picture(module, n, found, unseen), truth))
+            scores[grow].append(parts.decibels(parts.picture(module, n, found, unseen), truth))
     full = module.fit_sparse(n, every, start, rays, target, 1, total, threshold, 0)
-    dense = _decibels(_picture(module, n, full, unseen), truth)
+    dense = parts.decibels(parts.picture(module, n, full, unseen), truth)
     gap = np.array(scores[1]) - scores[0]
     facts: Facts = {
         "pruned every 3 steps it loses more than 5 dB": Fact(
@@ -305,9 +305,9 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     grid = figure.add_gridspec(2, 3, height_ratios=(1.1, 1))
     view = shown[:, one]
     pictures = (
-        ("truth", module.render(values, _samples(module, 16, voxels, view))),
-        ("pruned every 3 steps", _picture(module, n, kept[0, 3], view)),
-        ("pruned and grown", _picture(module, n, kept[1, 3], view)),
+        ("truth", module.render(values, parts.samples_of(module, 16, voxels, view))),
+        ("pruned every 3 steps", parts.picture(module, n, kept[0, 3], view)),
+        ("pruned and grown", parts.picture(module, n, kept[1, 3], view)),
     )
     for k, (title, colors) in enumerate(pictures):
         axes = figure.add_subplot(grid[0, k])
@@ -329,106 +329,6 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     axes.minorticks_off()
     plain_axes(axes)
     return figure, facts
-
-
-def _gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
-    """(loss, derivative by the middle step's four numbers) on the ray of the warm-up."""
-    values = np.array([[0.2] * 3 + [1.0], [color] * 3 + [sigma], [0.8] * 3 + [2.0]])
-    row = np.full((8, 3), -1)
-    row[0] = 0, 1, 2
-    weight = np.zeros((8, 3))
-    weight[0] = 1.0
-    samples = (np.ones((1, 3), bool), np.array([0.5]), row, weight)
-    loss, d_values = module.loss_and_grad(values, samples, np.full((1, 3), 0.6))
-    return loss, d_values[1]
-
-
-def _shell(n: int) -> Array:
-    """Cells through which a sphere passes."""
-    x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    away = np.linalg.norm(x - [0.05, -0.1, 0.0], axis=-1)
-    return np.abs(away - 0.72) < 0.9 / n
-
-
-def _leaves_in_slice(
-    module: ModuleType, tree: Array, n: int, k: int
-) -> list[tuple[tuple[float, float], float, bool]]:
-    """(lower corner, side, full) of the leaves that cells (i, j, k) lie in."""
-    cells = np.stack([*np.indices((n, n)).reshape(2, -1), np.full(n * n, k)], axis=1) + 0.5
-    full, low, side = module.octree_leaf(tree, n, cells)
-    rows = np.unique(np.column_stack([low[:, :2], side, full]), axis=0)
-    return [((x, y), s, bool(f)) for x, y, s, f in rows]
-
-
-def _looks(
-    module: ModuleType, rng: np.random.Generator, slots: int, count: int
-) -> tuple[float, float]:
-    """Mean number of slots that a search for voxels in the table and for others looks at."""
-    voxels = np.unique(rng.integers(-500, 500, (2 * count + 2000, 3)), axis=0)
-    voxels = rng.permutation(voxels)
-    table = np.zeros((slots, 4), np.int64)
-    table[:, 3] = -1
-    table = module.voxel_hash_insert(table, voxels[:count], np.arange(count))
-    taken = table[:, 3] >= 0
-    start = module.hash_slot(voxels, slots)
-    place = np.flatnonzero(taken)
-    here = np.zeros(count, int)
-    here[table[place, 3]] = place
-    hits = (here - start[:count]) % slots + 1
-    free = np.flatnonzero(~taken)
-    ahead = np.searchsorted(free, start[count:]) % len(free)
-    misses = (free[ahead] - start[count:]) % slots + 1
-    return float(hits.mean()), float(misses.mean())
-
-
-def _cameras(views: int, size: int, turned: float = 0.0) -> Array:
-    """Rays (2, views size^2, 3) of cameras all around."""
-    return rays_to_origin(3.2 * all_around(views, turned), size, 0.38)
-
-
-def _object(n: int) -> tuple[Array, Array]:
-    """(voxels, values): an orange ball with a blue ring around it."""
-    every = np.argwhere(np.ones((n, n, n), bool))
-    x = (every + 0.5) / n * 2 - 1
-    ball = np.clip((0.33 - np.linalg.norm(x, axis=1)) * n / 3 + 0.5, 0, 1)
-    ring = np.hypot(np.hypot(x[:, 0], x[:, 1]) - 0.7, x[:, 2])
-    ring = np.clip((0.14 - ring) * n / 3 + 0.5, 0, 1)
-    values = np.zeros((len(x), 4))
-    values[:, :3] = np.where((ball >= ring)[:, None], (0.9, 0.6, 0.25), (0.35, 0.55, 0.9))
-    values[:, 3] = 8 * np.maximum(ball, ring)
-    return every[values[:, 3] > 0], values[values[:, 3] > 0]
-
-
-def _rods(n: int) -> tuple[Array, Array]:
-    """(voxels, values): three rods that pass each other."""
-    every = np.argwhere(np.ones((n, n, n), bool))
-    x = (every + 0.5) / n * 2 - 1
-    values = np.zeros((len(x), 4))
-    rods = (
-        ((0.9, 0.5, 0.2), (-0.3, 0.25)),
-        ((0.3, 0.8, 0.3), (0.35, -0.3)),
-        ((0.3, 0.5, 0.9), (0.1, 0.4)),
-    )
-    for axis, (paint, place) in enumerate(rods):
-        away = np.linalg.norm(np.delete(x, axis, axis=1) - place, axis=1)
-        inside = np.clip((0.17 - away) * n / 3 + 0.5, 0, 1) * (np.abs(x[:, axis]) < 0.75)
-        values[inside > 0, :3] = paint
-        values[:, 3] = np.maximum(values[:, 3], 8 * inside)
-    return every[values[:, 3] > 0], values[values[:, 3] > 0]
-
-
-def _samples(module: ModuleType, n: int, voxels: Array, rays: Array) -> tuple[Array, ...]:
-    empty = module.new_table(len(voxels))
-    table = module.voxel_hash_insert(empty, voxels, np.arange(len(voxels)))
-    return module.march(n, voxels, table, rays)
-
-
-def _picture(module: ModuleType, n: int, found: tuple[Array, ...], rays: Array) -> Array:
-    return module.render(found[1], _samples(module, n, found[0], rays))
-
-
-def _decibels(a: Array, b: Array) -> float:
-    return float(-10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30)))
 
 
 FIGURES = figures_of(fig1_absent, fig2_octree, fig3_skip, fig4_hash, fig5_lost, fig6_topology)

@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import LAMP
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
-from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.metrics import psnr
 from photograd_course.viz.handout import Fact, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
@@ -17,7 +17,7 @@ from photograd_course.viz.style import RED as CRIMSON
 
 def fig1_harmonics(module):
     """Harmonics to degree 3 on balls."""
-    d, inside = _ball(44)
+    d, inside = parts.ball(44)
     Y = module.sh_basis(d, 3)
     east, pole = module.sh_basis(np.array([[1.0, 0, 0], [0, 0, 1.0]]), 3)
     around, weights = module.quadrature(6)
@@ -41,7 +41,7 @@ def fig1_harmonics(module):
     for ell in range(4):
         for m in range(-ell, ell + 1):
             axes = figure.add_axes((0.075 + (m + 3) * 0.128, 0.745 - ell * 0.235, 0.122, 0.205))
-            image = _show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
+            image = parts.show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
             axes.set_title(f"m = {m}".replace("-", "−"), fontsize=7.5, pad=1.5)
         figure.text(0.015, 0.845 - ell * 0.235, f"l = {ell}", fontsize=9)
     bar = figure.add_axes((0.86, 0.75, 0.015, 0.2))
@@ -52,14 +52,16 @@ def fig1_harmonics(module):
 def fig2_projection(module):
     """A sky and what degrees 0, 1, 2 and 4 keep of it."""
     d, weights = module.quadrature(40)
-    places, shape = _map(48)
-    rows, shown = {}, [("the sky", _sky(places)[:, 0])]
+    places, shape = parts.direction_map(48)
+    rows, shown = {}, [("the sky", parts.sky(places)[:, 0])]
     for degree in (0, 1, 2, 4):
-        c = module.sh_project(d, weights, _sky(d), degree)
+        c = module.sh_project(d, weights, parts.sky(d), degree)
         shown.append((f"degree {degree}", (module.sh_basis(places, degree) @ c)[:, 0]))
         again = module.sh_basis(d, degree) @ c
-        rows[degree] = again, float(np.sqrt(weights @ (again - _sky(d)) ** 2)[0])
-    means = [float((weights @ again)[0] / (weights @ _sky(d))[0]) for again, _ in rows.values()]
+        rows[degree] = again, float(np.sqrt(weights @ (again - parts.sky(d)) ** 2)[0])
+    means = [
+        float((weights @ again)[0] / (weights @ parts.sky(d))[0]) for again, _ in rows.values()
+    ]
     errors = [error for _, error in rows.values()]
     four = rows[4][0][:, 0]
     peak = shown[-1][1]
@@ -108,21 +110,21 @@ def fig2_projection(module):
 def fig3_tangent(module):
     """A function of direction, and its derivative by v as arrows, from two sides."""
     c = np.random.default_rng(4).uniform(-1, 1, (16, 1))
-    d, inside = _ball(61)
-    at, _ = _ball(15)
+    d, inside = parts.ball(61)
+    at, _ = parts.ball(15)
     at = at[at[:, 1] < -0.3]
     from_above = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    parts, rises, drawn = [], [], []
+    along, rises, drawn = [], [], []
     for turn in (np.eye(3), from_above):  # rows: what lies to the right, behind, up
         v = at @ turn
         many = np.broadcast_to(c, (len(v), 16, 1)).copy()
         _, arrows = module.sh_color_adjoint(many, v, np.ones((len(v), 1)))
-        parts.append(np.abs(np.sum(arrows * v, axis=1)).max())
+        along.append(np.abs(np.sum(arrows * v, axis=1)).max())
         step = 1e-4 * arrows
         rises.append(module.sh_color(many, v + step) > module.sh_color(many, v))
         drawn.append((module.sh_basis(d @ turn, 3) @ c, arrows @ turn.T))
     facts = {
-        "arrows are tangent": Fact(max(parts), 0, 1e-12, red="no_projection"),
+        "arrows are tangent": Fact(max(along), 0, 1e-12, red="no_projection"),
         "along each arrow f rises": Fact(np.all(rises), red="wave_slope_sign"),
         "over 200 arrows": Fact(2 * len(at), 200, 400, held="about what is drawn"),
     }
@@ -130,7 +132,7 @@ def fig3_tangent(module):
     top = max(float(np.abs(values).max()) for values, _ in drawn)
     titles = ("from −y: x to the right, z up", "from +z: x to the right, y up")
     for axes, (values, arrows), title in zip(panels, drawn, titles, strict=True):
-        image = _show_ball(axes, values[:, 0], inside, top)
+        image = parts.show_ball(axes, values[:, 0], inside, top)
         axes.quiver(
             at[:, 0], at[:, 2], arrows[:, 0], arrows[:, 2], color=INK, scale=26, width=0.006
         )
@@ -142,8 +144,8 @@ def fig3_tangent(module):
 def fig4_irradiance(module):
     """Irradiance by brute force, from nine coefficients, and the difference by degree."""
     d, weights = module.quadrature(90)
-    normals, shape = _map(24)
-    light = _sky(d, 6.0, 1.0)
+    normals, shape = parts.direction_map(24)
+    light = parts.sky(d, 6.0, 1.0)
     brute = np.maximum(normals @ d.T, 0) @ (weights[:, None] * light)
     mean = float(brute.mean())
     found, errors = {}, []
@@ -163,7 +165,7 @@ def fig4_irradiance(module):
     }
     figure, panels = subplots(7.0, 3.3, 2, 3)
     high = float(brute.max()) * 1.05
-    sky = _sky(normals, 6.0, 1.0)
+    sky = parts.sky(normals, 6.0, 1.0)
     off = (found[2] - brute) / mean * 100
     far = 3.0
     for axes, values, title, limits, colors in (
@@ -214,8 +216,8 @@ def fig4_irradiance(module):
 def fig5_glyphs(module):
     """What a step against the derivative does to the colors of a slice, by direction."""
     n, light = 12, np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
-    density, c = _ball_scene(module, n, light)
-    rays = _photographs(40, 16)
+    density, c = parts.ball_scene(module, n, light)
+    rays = parts.photographs(40, 16)
     samples = module.march(density.shape, rays)
     target = module.render(density, c, samples)
     gray = np.zeros_like(c)
@@ -223,7 +225,7 @@ def fig5_glyphs(module):
     _, _, d_c = module.loss_and_grad(density, gray, samples, target)
     slice_ = -(d_c[:, n // 2 - 1] + d_c[:, n // 2])[:, :, :, 0]
     energy = np.sum(d_c**2, axis=(3, 4))
-    near = _dilated(density > 0)
+    near = parts.dilated(density > 0)
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     normal = x / np.linalg.norm(x, axis=-1, keepdims=True)
     lit = (density > 4) & (normal @ light > 0.9) & (np.linalg.norm(x, axis=-1) > 0.4)
@@ -268,8 +270,12 @@ def fig5_glyphs(module):
 def fig6_coarse_to_fine(module):
     """A new view by a fixed grid and coarse to fine; PSNR of new views against steps."""
     light = np.array([0.48, -0.6, 0.64])
-    density, c = _ball_scene(module, 20, light, second=True)
-    rays, unseen, large = _photographs(30, 6), _photographs(10, 6, 0.37), _photographs(3, 28, 0.9)
+    density, c = parts.ball_scene(module, 20, light, second=True)
+    rays, unseen, large = (
+        parts.photographs(30, 6),
+        parts.photographs(10, 6, 0.37),
+        parts.photographs(3, 28, 0.9),
+    )
     large = large[:, 28 * 28 : 2 * 28 * 28]
     target, truth, view = (
         module.render(density, c, module.march(density.shape, each))
@@ -287,10 +293,10 @@ def fig6_coarse_to_fine(module):
             count = (1, end) if levels == 1 else (end // 6, 6)
             found = module.fit_plenoxels(*first, rays, target, *count)[:2]
             stages.append((end, found))
-        scores = [psnr(_seen(module, each, unseen), truth) for _, each in stages]
-        own = psnr(_seen(module, found, rays), target)
+        scores = [psnr(parts.seen(module, each, unseen), truth) for _, each in stages]
+        own = psnr(parts.seen(module, found, rays), target)
         ends = [end for end, _ in stages]
-        runs[name] = ends, scores, _seen(module, found, large), own
+        runs[name] = ends, scores, parts.seen(module, found, large), own
     fixed, fine, plain = (runs[name][1] for name in runs)
     cells = module.fit_plenoxels(*first, rays, target, 3, 0)[0].shape
     facts = {
@@ -324,86 +330,6 @@ def fig6_coarse_to_fine(module):
     axes.grid(visible=True)
     axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
-
-
-def _seen(module, volume, rays):
-    return module.render(*volume, module.march(volume[0].shape, rays))
-
-
-def _ball(n):
-    """Directions of the front half of a ball, seen along +y from y = -1, and which pixels."""
-    x, z = np.meshgrid(np.linspace(-1, 1, n), np.linspace(1, -1, n))
-    inside = x**2 + z**2 < 1
-    y = -np.sqrt(np.maximum(1 - x**2 - z**2, 0))
-    return np.stack([x, y, z], axis=-1)[inside], inside
-
-
-def _show_ball(axes, values, inside, top):
-    picture = np.full(inside.shape, np.nan)
-    picture[inside] = values
-    image = axes.imshow(
-        picture,
-        cmap=signed_color_map(),
-        vmin=-top,
-        vmax=top,
-        extent=(-1, 1, -1, 1),
-        interpolation="nearest",
-    )
-    rim = Circle((0, 0), 0.985, facecolor="none", edgecolor=FRAME, linewidth=0.9)
-    axes.add_patch(rim)
-    image.set_clip_path(rim)
-    axes.set_axis_off()
-    return image
-
-
-def _map(rows):
-    """Directions (N, 3) of a map of the sphere: angle to the right, z up, each cell alike large."""
-    z = 1 - (np.arange(rows) + 0.5) * 2 / rows
-    phi = (np.arange(2 * rows) + 0.5) * np.pi / rows
-    z, phi = np.meshgrid(z, phi, indexing="ij")
-    r = np.sqrt(1 - z * z)
-    return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3), z.shape
-
-
-LAMP = np.array([0.48, 0.64, 0.6])
-
-
-def _sky(d, sharp=25.0, pale=0.3):
-    """Radiance (N, 1): pale above, dark below, and a lamp, the smaller the sharper."""
-    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LAMP[:, None] - 1))
-
-
-def _ball_scene(module, n, light, second=False):
-    """A shiny ball, perhaps with a second one: density (n, n, n) and coefficients."""
-    x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
-    radii = [0.6] if not second else [0.45, 0.3]
-    away = [np.linalg.norm(x - center, axis=-1) for center in centers]
-    inside = [np.clip((r - a) * n / 3 + 0.5, 0, 1) for r, a in zip(radii, away, strict=True)]
-    which = np.argmax(inside, axis=0)
-    normal = x - np.array(centers)[which]
-    normal = normal / (np.linalg.norm(normal, axis=-1, keepdims=True) + 1e-12)
-    facing = normal @ light
-    mirrored = 2 * facing[..., None] * normal - light
-    c = module.sh_basis(mirrored.reshape(-1, 3), 2) * np.repeat([0.9, 0.8, 0.6], [1, 3, 5])
-    c = c.reshape(n, n, n, 9, 1)
-    c[..., 0, 0] += np.array([2.5, 1.4])[which] * (0.3 + 0.5 * np.maximum(facing, 0))
-    return 8 * np.max(inside, axis=0), c
-
-
-def _photographs(views, pixels, twist=0.0):
-    """Rays of cameras spread evenly all around, that look at the middle."""
-    places = 3.2 * all_around(views, 2 * np.pi * twist)
-    return rays_to_origin(places, pixels, np.tan(0.375))
-
-
-def _dilated(mask):
-    """A mask and all cells next to it."""
-    grown = mask.copy()
-    for axis in range(3):
-        for step in (1, -1):
-            grown |= np.roll(mask, step, axis)
-    return grown
 
 
 FIGURES = figures_of(

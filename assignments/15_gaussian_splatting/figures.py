@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
-from matplotlib.axes import Axes
+from figure_parts import BLACK, MOST, SIZE, STEPS, VIEWS
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
-from photograd_course.assignment.bundle import read_folder
-from photograd_course.build.kits import source_folders
-from photograd_course.captures import all_around, look_at_origin, striped_balls
-from photograd_course.viz.handout import Array, Fact, Facts, figures_of, subplots
+from photograd_course.viz.handout import Fact, Facts, figures_of, subplots
 from photograd_course.viz.style import BLUE, GRAY, ORANGE, plain_axes, signed_color_map
-
-Scene = dict[str, Array]
-Camera = dict[str, object]
-BLACK = np.zeros(3)
-SIZE, VIEWS, MOST, STEPS = 32, 12, 180, 120
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     """Points of a Gaussian as the camera sees them with its ellipse; its width far outside."""
-    camera = _camera(np.array([0.0, 0.0, -4.0]), 64)
+    camera = parts.camera_at(np.array([0.0, 0.0, -4.0]), 64)
     cov, _ = module.covariance(np.array([[0.9, 0.3, -0.2, 0.5]]), np.log([[0.5, 0.15, 0.3]]))
     mean = np.array([[0.25, -0.15, 0.2]])
     mean2d, cov2d, _, _ = module.project(mean, cov, camera)
@@ -35,7 +25,7 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     ball = np.repeat(0.04 * np.eye(3)[None], 80, axis=0)
     limit = float(module.limits(camera)[1][0])
     slopes = np.linspace(0, 5 * limit, 80)
-    places = _world(camera, np.stack([3 * slopes, 0 * slopes, 0 * slopes + 3], axis=1))
+    places = parts.world(camera, np.stack([3 * slopes, 0 * slopes, 0 * slopes + 3], axis=1))
     widths = [np.sqrt(module.project(places, ball, camera)[1][:, 0])]
     module.MARGIN, kept = 1e3, module.MARGIN  # type: ignore[attr-defined]
     widths.append(np.sqrt(module.project(places, ball, camera)[1][:, 0]))
@@ -51,7 +41,7 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     figure, (left, right) = subplots(7.0, 3.0, 1, 2)
     left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
     for k in (1, 2):
-        left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+        left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
     left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
     left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
     right.plot(slopes, free, "--", color=ORANGE, label="not held")
@@ -100,12 +90,12 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
 def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     """One splat over two stripes: what each pixel adds, and what more Gaussians are worth."""
     n = 16
-    camera = _camera(np.array([0.0, 0.0, -2.0]), n)
+    camera = parts.camera_at(np.array([0.0, 0.0, -2.0]), n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5).reshape(2, -1)
     pixels = np.stack([x, y], axis=1)
     off = np.abs(x - n / 2)
     truth = np.where((off > 2) & (off < 5), 0.9, 0.05)[:, None] * np.ones(3)
-    one = _cloud(1, 0.35)
+    one = parts.cloud(1, 0.35)
     one["means"][:], one["colors"][:] = 0.0, 0.7
     shown, back = module.render(one, camera, pixels, BLACK)
     d_shown = 2 * (shown - truth) / len(pixels)
@@ -123,7 +113,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     signed = np.abs(pulls.sum(axis=0))
     views = [(camera, truth.reshape(n, n, 3))]
     curves = [
-        module.fit(_cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, most, 20)[1]
+        module.fit(parts.cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, most, 20)[1]
         for most in (0, 60)
     ]
     facts: Facts = {
@@ -146,7 +136,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         width=0.006,
     )
     for k in (1, 2):
-        left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+        left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
     left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
     right.semilogy(curves[0], color=GRAY, label="four Gaussians")
     right.semilogy(curves[1], color=BLUE, label="up to sixty")
@@ -159,12 +149,12 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
 def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     """A view that was not among the photographs, while it is learned."""
     marks = (0, 20, 40, 80, STEPS)
-    kept, found, _ = _fitted(module, marks)
-    fine = _camera(_places(3, 1.0)[0], 96)
-    truth = _photograph(fine)
+    kept, found, _ = parts.fitted(module, marks)
+    fine = parts.camera_at(parts.places(3, 1.0)[0], 96)
+    truth = parts.photograph(fine)
     shown = [module.picture(scene, fine, BLACK)[0] for scene in kept]
-    new = [_photographs(3, 1.0), [len(scene["means"]) for scene in kept]]
-    scores = [_score(module, scene, new[0]) for scene in kept]
+    new = [parts.photographs(3, 1.0), [len(scene["means"]) for scene in kept]]
+    scores = [parts.score_of(module, scene, new[0]) for scene in kept]
     facts: Facts = {
         "each frame is better than the one before": Fact(np.all(np.diff(scores) > 0)),
         "the last one has more than 26 dB on new views": Fact(scores[-1], 26, 60),
@@ -173,14 +163,14 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     }
     figure, panels = subplots(7.0, 1.75, 1, len(marks) + 1)
     for axes, image, step, count, score in zip(panels, shown, marks, new[1], scores, strict=False):
-        _show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
-    _show(panels[-1], truth, "truth\n")
+        parts.show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
+    parts.show(panels[-1], truth, "truth\n")
     return figure, facts
 
 
 def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     """Where descent moves each Gaussian, how hard the pixels pull, and what is chosen for that."""
-    (scene,), _, views = _fitted(module, (70,), 70)
+    (scene,), _, views = parts.fitted(module, (70,), 70)
     camera, truth = views[1]
     shown, back = module.picture(scene, camera, BLACK)
     error = shown - truth
@@ -211,9 +201,9 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     )
     arrows *= 4 / np.quantile(np.linalg.norm(arrows, axis=1), 0.97)
     figure, panels = subplots(7.0, 2.7, 1, 3)
-    _show(panels[0], truth, "a photograph")
-    _show(panels[1], shown, "arrows: where descent moves means")
-    _show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
+    parts.show(panels[0], truth, "a photograph")
+    parts.show(panels[1], shown, "arrows: where descent moves means")
+    parts.show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
     panels[1].quiver(
         *(places - 0.5).T,
         *arrows.T,
@@ -238,12 +228,12 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
 
 def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     """One capture, three representations: pictures, bytes, what photographs want at first."""
-    views, unseen = _photographs(VIEWS), _photographs(3, 1.0)
-    begin = _cloud(80, 0.1)
-    _, splats, _ = _fitted(module, ())
-    volume, slope9, score9 = _volume(views, unseen)
-    grid, slope11, score11 = _grid(views, unseen)
-    score = _score(module, splats, unseen)
+    views, unseen = parts.photographs(VIEWS), parts.photographs(3, 1.0)
+    begin = parts.cloud(80, 0.1)
+    _, splats, _ = parts.fitted(module, ())
+    volume, slope9, score9 = parts.volume(views, unseen)
+    grid, slope11, score11 = parts.grid(views, unseen)
+    score = parts.score_of(module, splats, unseen)
     sizes = [4 * sum(a.size for a in splats.values()), 4 * volume.size, 4 * grid]
     facts: Facts = {
         "the Gaussians have the most decibels": Fact(score > max(score9[0], score11[0])),
@@ -261,13 +251,13 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     names = ("Gaussians", "volume (09)", "SH grid (11)")
     pictures = (module.picture(splats, unseen[0][0], BLACK)[0], score9[1], score11[1])
     figure, panels = subplots(7.0, 3.9, 2, 4)
-    _show(panels[0, 0], unseen[0][1], "a new view: truth")
+    parts.show(panels[0, 0], unseen[0][1], "a new view: truth")
     for axes, image, name, size, decibels in zip(
         panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
     ):
-        _show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
-    _show(panels[1, 0], truth, "a photograph")
-    _show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
+        parts.show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
+    parts.show(panels[1, 0], truth, "a photograph")
+    parts.show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
     panels[1, 1].quiver(
         *(places - 0.5).T,
         *arrows.T,
@@ -287,185 +277,6 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set(xticks=[], yticks=[])
         axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
     return figure, facts
-
-
-def _camera(place: Array, size: int) -> Camera:
-    """At a place, looking at the origin; y down."""
-    W = look_at_origin(place)[:3, :3].T
-    return {
-        "camera_from_world": np.concatenate([W, -(W @ place)[:, None]], axis=1),
-        "focal": np.full(2, 1.2 * size),
-        "center": np.full(2, size / 2),
-        "width": size,
-        "height": size,
-    }
-
-
-def _world(camera: Camera, t: Array) -> Array:
-    pose = np.asarray(camera["camera_from_world"])
-    return (t - pose[:, 3]) @ pose[:, :3]
-
-
-def _places(count: int, turn: float = 0.0) -> Array:
-    return 3.2 * all_around(count, turn, up=1, top=0.8, span=1.2)
-
-
-def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
-    """Origin (3,) and unit directions (H, W, 3) of a camera's rays."""
-    n, pose = int(str(camera["width"])), np.asarray(camera["camera_from_world"])
-    v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
-    d = (np.stack([u, v], axis=-1) - camera["center"]) / camera["focal"]
-    d = np.concatenate([d, np.ones((*u.shape, 1))], axis=-1)
-    return _world(camera, np.zeros(3)), d / np.linalg.norm(d, axis=-1, keepdims=True) @ pose[:, :3]
-
-
-def _photograph(camera: Camera) -> Array:
-    """Three lit and striped balls before black, nine rays a pixel."""
-    image = striped_balls(*_rays(camera, 3), BLACK)
-    n = len(image) // 3
-    return image.reshape(n, 3, n, 3, 3).mean(axis=(1, 3))
-
-
-def _photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:
-    cameras = [_camera(place, SIZE) for place in _places(count, turn)]
-    return [(camera, _photograph(camera)) for camera in cameras]
-
-
-def _cloud(count: int, scale: float) -> Scene:
-    """Gray balls anywhere."""
-    rng = np.random.default_rng(15)
-    return {
-        "means": rng.uniform(-0.8, 0.8, (count, 3)),
-        "quats": np.eye(4)[[0] * count],
-        "log_scales": np.full((count, 3), np.log(scale)),
-        "opacity_logits": np.full(count, -1.0),
-        "colors": np.full((count, 3), 0.5),
-    }
-
-
-def _fitted(
-    module: ModuleType, marks: tuple[int, ...], steps: int = STEPS
-) -> tuple[list[Scene], Scene, list[tuple[Camera, Array]]]:
-    """The scenes at the marked steps, the last one, and the photographs."""
-    views, kept = _photographs(VIEWS), {}
-
-    def watch(step: int, scene: Scene, _: float) -> None:
-        if step in marks:
-            kept[step] = scene
-
-    found, _ = module.fit(
-        _cloud(80, 0.1), views, steps, np.random.default_rng(15), BLACK, MOST, 20, watch
-    )
-    return [kept.get(mark, found) for mark in marks], found, views
-
-
-def _score(module: ModuleType, scene: Scene, views: list[tuple[Camera, Array]]) -> float:
-    error = [module.picture(scene, camera, BLACK)[0] - truth for camera, truth in views]
-    return float(-10 * np.log10(np.mean(np.square(error))))
-
-
-def _solution_of(number: str) -> ModuleType:
-    """The solution's module of another assignment."""
-    folder = next(Path(path) for name, path in source_folders().items() if name.startswith(number))
-    return read_folder(folder).reference
-
-
-def _views_of_09(views: list[tuple[Camera, Array]]) -> dict[str, object]:
-    poses = []
-    for camera, _ in views:
-        pose = np.eye(4)
-        pose[:3] = camera["camera_from_world"]
-        poses.append(np.linalg.inv(pose))
-    return {
-        "pictures": np.stack([truth for _, truth in views]),
-        "world_from_camera": np.stack(poses),
-        "focal": float(np.asarray(views[0][0]["focal"])[0]),
-        "low": np.full(3, -1.0),
-        "high": np.full(3, 1.0),
-        "background": BLACK,
-    }
-
-
-def _volume(
-    views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
-) -> tuple[Array, Array, tuple[float, Array]]:
-    """Assignment 09's fit: volume, the derivative by density at its start, score and a view."""
-    other = _solution_of("09")
-    photos, new = _views_of_09(views), _views_of_09(unseen)
-    fog = other.fog((20, 20, 20))
-    found, _ = other.fit_volume(photos, fog, 40, np.random.default_rng(15))
-    everything = np.arange(np.asarray(new["pictures"])[..., 0].size)
-    origins, directions, truth = other.ray_batch(new, everything)
-    shown = other.render_rays(found, new["low"], new["high"], origins, directions, 32, BLACK)
-    score = float(-10 * np.log10(np.mean((shown - truth) ** 2)))
-    chosen = np.random.default_rng(15).choice(VIEWS * SIZE**2, 1000, replace=False)
-    origins, directions, truth = other.ray_batch(photos, chosen)
-    rays = (photos["low"], photos["high"], origins, directions, other.SAMPLES, BLACK)
-    _, d_pixels = other.mse_and_cotangent(other.render_rays(fog, *rays), truth)
-    slope = other.render_adjoint(fog, *rays, d_pixels)[0][..., 3]
-    return found, slope, (score, shown.reshape(len(unseen), SIZE, SIZE, 3)[0])
-
-
-def _grid(
-    views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
-) -> tuple[int, Array, tuple[float, Array]]:
-    """Assignment 11's fit: how many numbers, the derivative by density at its start, and a view."""
-    other = _solution_of("11")
-    rays, target = _bundle(views)
-    chosen = np.random.default_rng(15).choice(len(target), 1000, replace=False)
-    rays, target = rays[:, chosen], target[chosen]
-    starts = []
-    for n in (6, 24):
-        coefficients = np.zeros((n, n, n, 4, 3))
-        coefficients[..., 0, :] = np.sqrt(np.pi)  # gray: one half
-        starts.append((np.full((n, n, n), 0.1), coefficients))
-    found = other.fit_plenoxels(*starts[0], rays, target, 3, 10)
-    samples = other.march(starts[1][0].shape, rays)
-    _, slope, _ = other.loss_and_grad(*starts[1], samples, target)
-    rays, truth = _bundle(unseen)
-    shown = other.render(found[0], found[1], other.march(found[0].shape, rays))
-    score = float(-10 * np.log10(np.mean((shown - truth) ** 2)))
-    numbers = found[0].size + found[1].size
-    return numbers, slope, (score, shown.reshape(len(unseen), SIZE, SIZE, 3)[0])
-
-
-def _bundle(views: list[tuple[Camera, Array]]) -> tuple[Array, Array]:
-    """All rays (2, R, 3) of views, and their colors (R, 3)."""
-    origins, directions = [], []
-    for camera, _ in views:
-        eye, d = _rays(camera)
-        directions.append(d.reshape(-1, 3))
-        origins.append(np.broadcast_to(eye, directions[-1].shape))
-    target = np.concatenate([truth.reshape(-1, 3) for _, truth in views])
-    return np.stack([np.concatenate(origins), np.concatenate(directions)]), target
-
-
-def _ellipse(middle: Array, cov2d: Array, k: float, **style: object) -> Ellipse:
-    """The ellipse of k standard deviations."""
-    values, vectors = np.linalg.eigh(cov2d[[0, 1, 1, 2]].reshape(2, 2))
-    angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
-    wide, narrow = 2 * k * np.sqrt(np.maximum(values[::-1], 0))
-    return Ellipse(
-        tuple(middle), wide, narrow, angle=angle, fill=False, linewidth=1.4, zorder=5, **style
-    )
-
-
-def _show(axes: Axes, picture: Array, title: str) -> None:
-    axes.imshow(np.clip(picture, 0, 1), interpolation="nearest")
-    axes.set(xticks=[], yticks=[])
-    axes.set_title(title, fontsize=8)
-
-
-def _calm(
-    make: Callable[[ModuleType], tuple[Figure, Facts]],
-) -> Callable[..., tuple[Figure, Facts]]:
-    """Far from a splat exp underflows to 0, as it should."""
-
-    def drawn(module: ModuleType) -> tuple[Figure, Facts]:
-        with np.errstate(under="ignore"):
-            return make(module)
-
-    return drawn
 
 
 FIGURES = figures_of()

@@ -25,7 +25,7 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks import load_check_modules
-from photograd_course.assignment.load import load_beside, load_module
+from photograd_course.assignment.load import load_beside, load_figure_script
 from photograd_course.assignment.manifest import read_manifest
 from photograd_course.build.course_files import dossier_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
@@ -132,7 +132,7 @@ def load_checks_of(folder: Path) -> ModuleType:
 
 @functools.cache
 def load_figures(folder: Path) -> ModuleType:
-    return load_module("figures", (folder / "figures.py").read_text("utf-8"))
+    return load_figure_script(folder)
 
 
 @functools.cache
