@@ -11,13 +11,23 @@ Your tasks are the six functions below, one section of the handout each;
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Texture = Annotated[np.ndarray, "H W C"]
+Places = Annotated[np.ndarray, "N 2"]  # (u, v)
+Samples = Annotated[np.ndarray, "N C"]
+Losses = Annotated[np.ndarray, "n+1"]
+Mask = Annotated[np.ndarray, "H W"]  # bool
+Shape = tuple[int, int]  # (H, W)
 
 CURVATURE_ROUNDS = 40  # of power iteration, before a descent
 SAFETY = 0.95  # share of the largest stable step that a descent takes
 
 
-def bilinear_sample(T, uv):
+def bilinear_sample(T: Texture, uv: Places) -> Samples:
     """Values of a texture at given places.
 
     Args:
@@ -40,7 +50,7 @@ def bilinear_sample(T, uv):
     # <<< solution
 
 
-def bilinear_sample_adjoint(shape, uv, g):
+def bilinear_sample_adjoint(shape: Shape, uv: Places, g: Samples) -> Texture:
     """The transpose of `bilinear_sample`: each sample's number goes back to its four texels.
 
     Args:
@@ -67,7 +77,7 @@ def bilinear_sample_adjoint(shape, uv, g):
     # <<< solution
 
 
-def loss_and_grad(T, uv, target):
+def loss_and_grad(T: Texture, uv: Places, target: Samples) -> tuple[float, Texture]:
     """How badly a texture explains the measured samples, and the derivative of that by its texels.
 
     Args:
@@ -87,7 +97,7 @@ def loss_and_grad(T, uv, target):
     # <<< solution
 
 
-def largest_curvature(shape, uv, n):
+def largest_curvature(shape: Shape, uv: Places, n: int) -> float:
     """The largest eigenvalue of the loss's Hessian, estimated by power iteration.
 
     The Hessian is the same for each channel and does not depend on texels or measurements.
@@ -110,7 +120,9 @@ def largest_curvature(shape, uv, n):
     # <<< solution
 
 
-def recover_texture(T0, uv, target, n):
+def recover_texture(
+    T0: Texture, uv: Places, target: Samples, n: int
+) -> tuple[Texture, Losses, Mask]:
     """Gradient descent with a fixed step, SAFETY times the largest stable one.
 
     Args:
@@ -137,7 +149,7 @@ def recover_texture(T0, uv, target, n):
     # <<< solution
 
 
-def build_mips(T):
+def build_mips(T: Texture) -> list[Texture]:
     """The pyramid of ever smaller versions of a texture, down to a single texel.
 
     Args:

@@ -12,7 +12,24 @@ far you are. The other functions are given and stay as they are. Values are floa
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vector = Annotated[np.ndarray, "3"]
+Vectors = Annotated[np.ndarray, "R 3"]
+PerRay = Annotated[np.ndarray, "R"]
+Triangles = Annotated[np.ndarray, "M 3 3"]
+PerTriangle = Annotated[np.ndarray, "M"]
+Weights = Annotated[np.ndarray, "M 2"]
+Boxes = Annotated[np.ndarray, "N 2 3"]
+Box = Annotated[np.ndarray, "2 3"]
+PerThing = Annotated[np.ndarray, "K"]
+Corners = Annotated[np.ndarray, "P 3"]
+Indices = Annotated[np.ndarray, "N"]  # int64
+Sdf = Callable[[Vectors], tuple[PerRay, Vectors, PerRay]]
 
 T_MIN = 1e-9  # nothing nearer counts as met
 CLOSE = 1e-9  # a march has arrived when less is left
@@ -37,7 +54,7 @@ def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
     return np.tile(world_from_camera[:, 3], (len(u), 1)), directions
 
 
-def hit_sphere(origins, directions, center, radius):
+def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: float) -> PerRay:
     """Where rays meet a sphere.
 
     Args:
@@ -62,7 +79,9 @@ def hit_sphere(origins, directions, center, radius):
     # <<< solution
 
 
-def hit_triangle(origin, direction, corners):
+def hit_triangle(
+    origin: Vector, direction: Vector, corners: Triangles
+) -> tuple[PerTriangle, Weights]:
     """Where one ray meets each of many triangles, from either side.
 
     Args:
@@ -88,7 +107,7 @@ def hit_triangle(origin, direction, corners):
     # <<< solution
 
 
-def refract(directions, normals, eta):
+def refract(directions: Vectors, normals: Vectors, eta: float) -> tuple[Vectors, PerRay]:
     """Where light goes on at a smooth surface of glass, by Snell's law.
 
     Args:
@@ -113,7 +132,9 @@ def refract(directions, normals, eta):
     # <<< solution
 
 
-def march_sdf(sdf, origins, directions, t_max, steps):
+def march_sdf(
+    sdf: Sdf, origins: Vectors, directions: Vectors, t_max: float, steps: int
+) -> tuple[PerRay, PerRay]:
     """Where rays meet a surface of which only the distance is known; and how that depends on it.
 
     Args:
@@ -146,7 +167,7 @@ def march_sdf(sdf, origins, directions, t_max, steps):
     # <<< solution
 
 
-def build_bvh(low, high):
+def build_bvh(low: Corners, high: Corners) -> tuple[Boxes, Indices, Indices, Indices]:
     """A tree of boxes around things, of which only the own box is known.
 
     Args:
@@ -180,7 +201,15 @@ def build_bvh(low, high):
     # <<< solution
 
 
-def traverse(first, count, order, box, meet, origin, direction):
+def traverse(
+    first: Indices,
+    count: Indices,
+    order: Indices,
+    box: Callable[[int], Box],
+    meet: Callable[[Indices], PerThing],
+    origin: Vector,
+    direction: Vector,
+) -> tuple[float, int]:
     """The first thing that a ray meets, with few questions.
 
     Args:

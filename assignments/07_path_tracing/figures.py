@@ -242,14 +242,14 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     for value in values:
         scene = module.demo_table(roughness=value)
         u = rng.random((2, n, 3))
-        parts = [
+        batches = [
             module.direct_light_backward(
                 scene, module.some(hit, rows), u[0, rows], u[1, rows], d[rows]
             )[1][0]
             for rows in np.arange(n).reshape(15, -1)
         ]
-        ours.append(sum(parts))
-        errors.append(float(np.std(parts) * np.sqrt(15)))
+        ours.append(sum(batches))
+        errors.append(float(np.std(batches) * np.sqrt(15)))
         wrong.append(ours[-1] + parts.through_density(module, scene, hit, u[1], value))
         ends = [
             parts.fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)

@@ -20,8 +20,20 @@ far you are. The other functions are given and stay as they are. All numbers are
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
+
+# Arrays and their shapes; float64 where nothing else is said.
+PerRow = Annotated[np.ndarray, "N"]
+Vectors = Annotated[np.ndarray, "N 3"]
+Colors = Annotated[np.ndarray, "N 3"]
+ThingColors = Annotated[np.ndarray, "T 3"]
+PerThing = Annotated[np.ndarray, "T"]
+Indices = Annotated[np.ndarray, "N"]  # int64
+Scene = dict[str, np.ndarray]
+Hit = dict[str, np.ndarray]
 
 T_MIN = 1e-6  # meters; nothing nearer counts as met
 ALWAYS = 2  # at a path's first two places, from the one that is seen on, nobody plays roulette
@@ -207,7 +219,7 @@ def brdf_pdf(scene, hit, wi):
 # Your tasks ---------------------------------------------------------------------------------------
 
 
-def light_pdf(scene, thing, wi, distance):
+def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> PerRow:
     """How densely `sample_light` draws directions, by solid angle.
 
     Args:
@@ -234,7 +246,7 @@ def light_pdf(scene, thing, wi, distance):
     # <<< solution
 
 
-def mis_weight(pdf, other):
+def mis_weight(pdf: PerRow, other: PerRow) -> PerRow:
     """How much a sample of one strategy counts, when another could have drawn it as well.
 
     Args:
@@ -251,7 +263,9 @@ def mis_weight(pdf, other):
     # <<< solution
 
 
-def direct_light(scene, hit, u_light, u_surface, proposal=None):
+def direct_light(
+    scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, proposal: Scene | None = None
+) -> Colors:
     """The light that comes straight from lamps and leaves the surface to the viewer.
 
     Args:
@@ -288,7 +302,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
     # <<< solution
 
 
-def roulette(beta, u):
+def roulette(beta: Colors, u: PerRow) -> tuple[Colors, PerRow]:
     """End paths that carry little; let the others carry more for it.
 
     Args:
@@ -308,7 +322,9 @@ def roulette(beta, u):
     # <<< solution
 
 
-def trace_paths(scene, origins, directions, depth, rng):
+def trace_paths(
+    scene: Scene, origins: Vectors, directions: Vectors, depth: int, rng: np.random.Generator
+) -> Colors:
     """The radiance that comes along rays, light over several surfaces included.
 
     Args:
@@ -343,7 +359,9 @@ def trace_paths(scene, origins, directions, depth, rng):
     # <<< solution
 
 
-def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
+def direct_light_backward(
+    scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, d_radiance: Colors
+) -> tuple[ThingColors, PerThing]:
     """The adjoint of `direct_light`, by what things are made of.
 
     Directions, densities and weights are held fixed: it is the derivative of

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.assignment.checks_file import load_beside
+from photograd_course.assignment.load import load_beside
 from photograd_course.build.public import kit_files
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Status
