@@ -5,8 +5,11 @@ Pages hold directives alone: docstrings and signatures come from the imported co
 
 from __future__ import annotations
 
+import ast
+import re
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
@@ -17,6 +20,21 @@ import docstrings  # noqa: E402
 
 FOLDER = DOCS / "api"
 LONGEST_VALUE = 80
+FILES = re.compile(
+    r"(?<![\w/])(?:(?:cpp|docs|tests|tools|python)/[\w/.]+|\w+\.(?:h|inl|cpp))(?![\w>`])"
+)
+"""What a docstring must not name, once files of the core and pages are links."""
+
+DOOR = {
+    "Photographs": "load_capture Capture View Camera estimate_bounds read_image",
+    "Fitting": "fit evaluate render load_model Model Fit FitOptions",
+    "Path tracing": "read_scene builtin_scene read_model PathTracer PathOptions Scene Material",
+    "Inverse rendering": "recover Target Unknown RecoveryOptions",
+    "Representations": "representations check_gradients Representation DenseGrid SparseSh OctreeSh "
+    "GaussianScene Gaussians",
+    "Meshes, errors": "Mesh Bvh Error",
+}
+"""The names at the door of `photograd` by what they are for, in the order of the page."""
 
 
 def pages() -> dict[str, str]:
@@ -48,9 +66,23 @@ def page_of(page: str, names: list[str]) -> str:
         if elsewhere := api_names.doors(name):
             roles = ", ".join(f":py:obj:`{home}`" for home in elsewhere)
             lines += [f"Also from here: {roles}.", ""]
-        for kind, home in sorted(described, key=lambda pair: pair[0] == api_names.DATA):
-            lines += _directive(kind, home)
+        if name == "photograd":
+            lines += _door(described)
+        else:
+            for kind, home in sorted(described, key=lambda pair: pair[0] == api_names.DATA):
+                lines += _directive(kind, home)
     return "\n".join(lines)
+
+
+def _door(described: list[tuple[str, str]]) -> list[str]:
+    """The names at the door by `DOOR`, which a test keeps complete."""
+    kinds = {home.rpartition(".")[2]: (kind, home) for kind, home in described}
+    lines: list[str] = []
+    for title, names in DOOR.items():
+        lines += [title, "-" * len(title), ""]
+        for name in names.split():
+            lines += _directive(*kinds[name]) if name in kinds else []
+    return lines
 
 
 def _directive(kind: str, home: str) -> list[str]:
@@ -83,13 +115,51 @@ def index(names: list[str]) -> str:
     return "\n".join(lines)
 
 
+def named_sources() -> list[str]:
+    """Files of the core, below cpp/photograd/, that a docstring of the reference names."""
+    return sorted({name for text in all_docstrings() for name in docstrings.sources_in(text)})
+
+
+def unknown_files() -> list[str]:
+    """Other sources that a docstring names, which a reader of the pages does not have."""
+    texts = (docstrings.link_sources(text) for text in all_docstrings())
+    return sorted({found[0] for text in texts for found in FILES.finditer(text)})
+
+
+def all_docstrings() -> Iterator[str]:
+    """Of all modules, classes and functions that are not commands."""
+    for name, folder in api_names.SOURCES.items():
+        for path in folder.rglob("*.py"):
+            parts = [name, *path.relative_to(folder).with_suffix("").parts]
+            if not api_names.is_documented(".".join(parts).removesuffix(".__init__")):
+                continue
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                    yield ast.get_docstring(node) or ""
+
+
+def source_page(source: str) -> str:
+    """A page that shows a file of the core."""
+    title = f"cpp/photograd/{source}"
+    path = f"/../{title}"
+    heading = [":orphan:", "", title, "=" * len(title), ""]
+    return "\n".join([*heading, f".. literalinclude:: {path}", "   :language: cpp", ""])
+
+
 def write(folder: Path = FOLDER) -> None:
     """Replace the folder's pages; a page whose text is the same keeps its date."""
     texts = pages()
     texts["index"] = index(list(texts))
+    _replace(folder, texts)
+    sources = {docstrings.page_name(source): source_page(source) for source in named_sources()}
+    _replace(DOCS / docstrings.SOURCES, sources)
+
+
+def _replace(folder: Path, texts: dict[str, str]) -> None:
     folder.mkdir(exist_ok=True)
+    wanted = {f"{name}.rst" for name in texts} | {Path(docstrings.SOURCES).name}
     for old in folder.iterdir():
-        if old.stem not in texts:
+        if old.name not in wanted:
             shutil.rmtree(old) if old.is_dir() else old.unlink()
     for name, text in texts.items():
         path = folder / f"{name}.rst"

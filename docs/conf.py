@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pybtex.plugin import register_plugin
 from pybtex.style.formatting.unsrt import Style
 from pybtex.style.labels import BaseLabelStyle
+from sphinx.util.inspect import TypeAliasForwardRef
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import api_pages
@@ -42,6 +42,7 @@ autodoc_type_aliases = {
 }
 napoleon_numpy_docstring = False
 napoleon_custom_sections = [("Fields", "params_style")]
+napoleon_use_param = False  # which would describe "spp, seed" once for each
 napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
@@ -62,33 +63,19 @@ class KeyStyle(Style):
     default_label_style = KeyLabels
 
 
+# Inside of a union or a container, autodoc writes an alias as its repr.
+TypeAliasForwardRef.__repr__ = lambda alias: alias.name
+
 register_plugin("pybtex.style.formatting", "keys", KeyStyle)
 
 
 def _edit_docstring(
-    _app: Sphinx, _what: str, _name: str, _thing: object, _options: object, lines: list[str]
+    _app: Sphinx, what: str, _name: str, _thing: object, _options: object, lines: list[str]
 ) -> None:
-    lines[:] = docstrings.to_rst(lines)
-
-
-# How autodoc writes an alias inside of a union.
-_ALIAS = re.compile(r"TypeAliasForwardRef\('([\w.]+)'\)")
-
-
-def _edit_signature(
-    _app: Sphinx,
-    _what: str,
-    _name: str,
-    _thing: object,
-    _options: object,
-    signature: str | None,
-    returns: str | None,
-) -> tuple[str | None, str | None]:
-    return signature and _ALIAS.sub(r"\1", signature), returns and _ALIAS.sub(r"\1", returns)
+    lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
-    app.connect("autodoc-process-signature", _edit_signature)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from photograd.lights import SpotLight
 from photograd.transport import (
     Accumulation,
+    IrradianceSensor,
     Material,
     PathTracer,
     PhotonMap,
-    Receiver,
     Scene,
     SphereShape,
     trace_light,
@@ -54,8 +54,8 @@ def scene(size: int) -> Scene:
 
 def table_irradiance(tracer: PathTracer, cells: int, particles: int) -> Accumulation:
     """W/m^2 of the middle of the table, seen from above; the camera's side is below."""
-    receiver = Receiver([-HALF, 0, HALF], [2 * HALF, 0, 0], [0, 0, -2 * HALF], cells, cells)
-    return trace_light(tracer, receiver, particles, seed=1)
+    sensor = IrradianceSensor([-HALF, 0, HALF], [2 * HALF, 0, 0], [0, 0, -2 * HALF], cells, cells)
+    return trace_light(tracer, sensor, particles, seed=1)
 
 
 def pictures(size: int, spp: int, particles: int) -> list[Array]:

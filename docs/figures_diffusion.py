@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 from photograd.lights import QuadLight, SpotLight
 from photograd.transport import (
     BOUNDARY,
+    IrradianceSensor,
     Material,
     Medium,
     ParticleOptions,
     PathTracer,
-    Receiver,
     Scene,
     emit_particles,
     trace_light,
@@ -104,7 +104,7 @@ DIFFUSE = QuadLight([-2e-4, 2e-4, 3e-3], [4e-4, 0, 0], [0, -4e-4, 0], [1.0, 1.0,
 
 def walk(
     albedo: float,
-    sensor: Receiver,
+    sensor: IrradianceSensor,
     light: Any = BEAM,
     *,
     particles: int,
@@ -126,10 +126,10 @@ def mirrored(eta: float) -> float:
     return ((eta - 1) / (eta + 1)) ** 2
 
 
-def above(width: float, cells: int) -> Receiver:
+def above(width: float, cells: int) -> IrradianceSensor:
     """Just above the half space: higher than what counts as lying on its boundary."""
     half = width / 2
-    return Receiver([-half, half, 1e-2], [width, 0, 0], [0, -width, 0], cells, cells)
+    return IrradianceSensor([-half, half, 1e-2], [width, 0, 0], [0, -width, 0], cells, cells)
 
 
 def walk_total(
@@ -188,8 +188,10 @@ def disc_by_walks(particles: int, pixels: int, seed: int = 1) -> Array:
     cos_outer = float(np.cos(np.arctan(DISC / height)))
     light = SpotLight([0, 0, height], [0, 0, -1], [height**2] * 3, cos_outer, 1e-3)
     tracer = PathTracer(half_space(WAX, light), dtype=np.float64)
-    receiver = Receiver([-VIEW / 2, VIEW / 2, 1e-2], [VIEW, 0, 0], [0, -VIEW, 0], pixels, pixels)
-    found = trace_light(tracer, receiver, particles, seed=seed, options=walks(WAX)).mean
+    sensor = IrradianceSensor(
+        [-VIEW / 2, VIEW / 2, 1e-2], [VIEW, 0, 0], [0, -VIEW, 0], pixels, pixels
+    )
+    found = trace_light(tracer, sensor, particles, seed=seed, options=walks(WAX)).mean
     both = found + found.transpose(1, 0, 2)
     return sum(np.rot90(both, k) for k in range(4)) / 8
 

@@ -46,7 +46,9 @@ def baked_room(scene: Scene, texels: int, spp: int) -> tuple[Scene, dict[str, Te
                 scene, shape.name, texels, radius=RADIUS, spp=spp, seed=1
             )
             maps[shape.name] = replace(baked, values=np.repeat(baked.values, 3, axis=2))
-            shapes.append(replace(shape, emission=np.ones(3), glow=TextureUse(shape.name)))
+            shapes.append(
+                replace(shape, emission=np.ones(3), emission_texture=TextureUse(shape.name))
+            )
         else:
             shapes.append(replace(shape, emission=np.zeros(3)))
     textures = {**scene.textures, **maps}

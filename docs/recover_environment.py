@@ -16,16 +16,16 @@ from photograd.capture.camera import Camera
 from photograd.images.exr import read_exr
 from photograd.lights import EnvironmentMap
 from photograd.transport import (
+    InverseRendering,
     Material,
+    Parameter,
     PathOptions,
     PathTracer,
-    Recovery,
     RecoveryOptions,
     RecoveryResult,
     Scene,
     SphereShape,
     Target,
-    Unknown,
     scene_with,
 )
 from photograd.transport.builtin import camera_at, map_directions
@@ -94,26 +94,28 @@ def targets_of(scene: Scene, views: list[Camera], spp: int) -> list[Target]:
     ]
 
 
-def search(truth: Array, count: int, options: RecoveryOptions, size: int, spp: int) -> Recovery:
+def search(
+    truth: Array, count: int, options: RecoveryOptions, size: int, spp: int
+) -> InverseRendering:
     """From an even gray sky."""
     scene = ball_under(truth, size)
     targets = targets_of(scene, cameras(count, size), spp)
     gray = scene_with(scene, {TEXELS: np.full_like(truth, START)})
-    return Recovery(gray, targets, [Unknown(TEXELS)], options)
+    return InverseRendering(gray, targets, [Parameter(TEXELS)], options)
 
 
-def first_gradient(job: Recovery) -> Array:
+def first_gradient(job: InverseRendering) -> Array:
     """First dL/dtexel (H, W) of squared radiance, summed over channels, by solid angle.
 
     The loss of the search counts lights relatively, and their wishes would hardly be seen.
     """
     squares = replace(job.options, loss="squared")
-    begin = Recovery(job.scene, job.targets, [Unknown(TEXELS)], squares)
+    begin = InverseRendering(job.scene, job.targets, [Parameter(TEXELS)], squares)
     gradient = begin.loss_and_gradients(0)[1][TEXELS].sum(axis=2)
     return np.asarray(gradient / solid_angle(len(gradient)))
 
 
-def sensitivity(job: Recovery, spp: int = 64) -> Array:
+def sensitivity(job: InverseRendering, spp: int = 64) -> Array:
     """d(sum of all pixels that count)/dtexel, summed over channels, by solid angle, (H, W)."""
     tracer = job.tracer()
     total = np.zeros(job.x[TEXELS].shape[:2])
@@ -151,7 +153,7 @@ def measure(data: Path) -> tuple[list[str], Figure]:
     """Lines of the page, and the figure."""
     truth = studio(data)
     results: dict[int, RecoveryResult] = {}
-    jobs: dict[int, Recovery] = {}
+    jobs: dict[int, InverseRendering] = {}
     words = [f"{lo}° to {hi}°" for lo, hi in BANDS]
     lines = [
         f"A map of {2 * ROWS} x {ROWS} texels from pictures of {SIZE} x {SIZE} pixels of a ball of "
@@ -183,7 +185,7 @@ def measure(data: Path) -> tuple[list[str], Figure]:
 
 
 def environment_figure(
-    truth: Array, job: Recovery, first: Array, results: dict[int, RecoveryResult]
+    truth: Array, job: InverseRendering, first: Array, results: dict[int, RecoveryResult]
 ) -> Figure:
     """The ball and the maps."""
     wide, gap, left = 2.9, 0.15, 0.15

@@ -18,18 +18,18 @@ from photograd.capture.orbit import orbit_cameras
 from photograd.images.read import read_image
 from photograd.lights import EnvironmentMap
 from photograd.transport import (
+    InverseRendering,
     Material,
     MeshShape,
+    Parameter,
     PathOptions,
     PathTracer,
-    Recovery,
     RecoveryOptions,
     RecoveryResult,
     Scene,
     Target,
     Texture,
     TextureUse,
-    Unknown,
     read_model,
 )
 from photograd.transport.builtin import camera_at, evening_map
@@ -174,14 +174,15 @@ def targets_of(case: Case, spp: int) -> list[Target]:
 
 def search(
     case: Case, options: RecoveryOptions, targets: list[Target], roughness: float = SMOOTH
-) -> Recovery:
+) -> InverseRendering:
     """From gray, half metal."""
     starts = {"textures.paint": 0.4, "materials.paint.roughness": roughness}
     rates = {"textures.paint": TEXTURE_RATE}  # or highlights would be painted on
-    unknowns = [
-        Unknown(name, start=starts.get(name, 0.5), rate=rates.get(name, 1.0)) for name in case.truth
+    parameters = [
+        Parameter(name, start=starts.get(name, 0.5), rate=rates.get(name, 1.0))
+        for name in case.truth
     ]
-    return Recovery(case.scene, targets, unknowns, options)
+    return InverseRendering(case.scene, targets, parameters, options)
 
 
 def seen_texels(case: Case, spp: int = 16) -> NDArray[np.bool_]:

@@ -14,14 +14,14 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.transport import (
     Accumulation,
+    InverseRendering,
     Material,
+    Parameter,
     PathOptions,
     PathTracer,
-    Recovery,
     RecoveryOptions,
     RecoveryResult,
     Scene,
-    Unknown,
     builtin_scene,
     recover,
     scene_with,
@@ -39,7 +39,7 @@ NOISY = replace(OPTIONS, spp=1)
 IMAGE = "recover_walls.png"
 
 
-class EqualSeeds(Recovery):
+class EqualSeeds(InverseRendering):
     """The known mistake: both halves are one picture, and the derivative has its paths."""
 
     def seeds(self, step: int, view: int) -> tuple[int, int]:
@@ -59,9 +59,9 @@ def room(size: int) -> Scene:
     return replace(scene, shapes=shapes, materials={**scene.materials, "floor": floor})
 
 
-def unknowns() -> list[Unknown]:
+def parameters() -> list[Parameter]:
     """The three colors, from gray."""
-    return [Unknown(f"materials.{name}.albedo", start=0.5) for name in WALLS.values()]
+    return [Parameter(f"materials.{name}.albedo", start=0.5) for name in WALLS.values()]
 
 
 def errors(scene: Scene, result: RecoveryResult) -> dict[str, float]:
@@ -83,7 +83,7 @@ def pull_on_red(scene: Scene, target: Array, spp: int) -> tuple[Array, Array]:
     The difference to the target comes from one seed, the derivative of the pixel (a central
     difference with paths held; albedos enter a path as factors) from another.
     """
-    gray = {each.name: np.full(3, 0.5) for each in unknowns()}
+    gray = {each.name: np.full(3, 0.5) for each in parameters()}
     tracer = PathTracer(scene_with(scene, gray))
     picture = tracer.render(spp=spp, seed=11, options=PATH).mean
     held = {name: value.copy() for name, value in tracer.params.items()}
@@ -118,7 +118,7 @@ def measure(_data: Path | None) -> tuple[list[str], Figure]:
     """Lines of the page, and the figure."""
     scene = room(SIZE)
     target = PathTracer(scene).render(spp=TARGET_SPP, seed=1, options=PATH).mean
-    result = recover(scene, target, unknowns(), options=OPTIONS, bar=True)
+    result = recover(scene, target, parameters(), options=OPTIONS, bar=True)
     lines = [
         f"One picture of {SIZE} x {SIZE} pixels, {OPTIONS.steps} steps of twice {OPTIONS.spp} "
         f"samples a pixel, {result.seconds:.0f} s.",
@@ -139,8 +139,8 @@ def measure(_data: Path | None) -> tuple[list[str], Figure]:
         "| seeds of the two halves | " + " | ".join(WALLS) + " |",
         "|---|" + "---|" * len(WALLS),
     ]
-    for words, kind in (("independent", Recovery), ("equal: the mistake", EqualSeeds)):
-        found = errors(scene, kind(scene, target, unknowns(), NOISY).run())
+    for words, kind in (("independent", InverseRendering), ("equal: the mistake", EqualSeeds)):
+        found = errors(scene, kind(scene, target, parameters(), NOISY).run())
         lines.append(f"| {words} | " + " | ".join(f"{x:.4f}" for x in found.values()) + " |")
     return lines, walls_figure(scene, target, result)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd.bsdf import Parameter
+from photograd.bsdf import ModelParameter
 from photograd.transport.material import MODELS
 
 PAGE = Path(__file__).resolve().parent / "scene_file.md"
@@ -27,7 +27,7 @@ def table() -> str:
     return "\n".join(rows) + "\n"
 
 
-def _described(parameter: Parameter) -> str:
+def _described(parameter: ModelParameter) -> str:
     color = ", color" if parameter.size == 3 else ""
     unit = "" if parameter.unit in ("", "1") else f" {parameter.unit}"
     return f"`{parameter.name}` ({parameter.lo:g} to {parameter.hi:g}{unit}{color})"

@@ -1,6 +1,6 @@
 # %% [markdown]
 # # Your first gradient
-# Draws a picture, the photograph, and where the picture is too bright or too dark.
+# Plots an image, the photograph, and where the image is too bright or too dark.
 
 # %%
 from __future__ import annotations

@@ -13,7 +13,7 @@ DPI = 160
 
 
 def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
-    """A picture, the photograph, and the derivative of the error by each pixel."""
+    """An image, the photograph, and the derivative of the loss with respect to each pixel."""
     rows, columns = np.mgrid[0:36, 0:48]
     photograph = np.exp(-((columns - 30.0) ** 2 + (rows - 17.0) ** 2) / 90.0)
     picture = np.exp(-((columns - 19.0) ** 2 + (rows - 20.0) ** 2) / 90.0)

@@ -1,4 +1,4 @@
-"""How wrong is a picture, and which way is better?
+"""The loss of an image, and its gradient.
 
 `loss` is done. One line is missing in `loss_gradient`: find it with the handout, write it, and run
 `photograd course check 00` again.
@@ -15,12 +15,12 @@ Image = Annotated[np.ndarray, "H W"]
 
 
 def loss(picture: Image, photograph: Image) -> float:
-    """Mean squared error, Eq. (1): pictures (H, W) of float64, any unit; the unit squared."""
+    """Mean squared error, Eq. (1), of two images (H, W), float64, of one unit; in its square."""
     return float(np.mean((picture - photograph) ** 2))
 
 
 def loss_gradient(picture: Image, photograph: Image) -> Image:
-    """Derivative of `loss` by every pixel of `picture`, Eq. (2): (H, W), float64."""
+    """Derivative of `loss` with respect to each pixel of `picture`, Eq. (2): (H, W), float64."""
     # >>> solution 00.1
     return 2.0 * (picture - photograph) / picture.size
     # <<< solution

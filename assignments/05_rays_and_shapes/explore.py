@@ -1,10 +1,10 @@
 # %% [markdown]
-# # What rays find
-# Draws three pictures with your functions: a ring of triangles and what each pixel cost; a ball of
-# glass over a floor; a marched ball and its derivative by the radius. Where the C++ core is
-# installed, Embree's answers stand beside yours. Never graded. `python explore.py` takes
-# `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays` (to
-# compare with the core).
+# # Rays and their closest hits
+# Renders three images with your functions: a ring of triangles and the cost of each pixel; a ball
+# of glass over a floor; a sphere-traced ball and its derivative with respect to the radius. Where
+# the C++ core is installed, Embree's results stand beside yours. Never graded. `python explore.py`
+# takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays`
+# (to compare with the core).
 
 # %%
 from __future__ import annotations
@@ -22,7 +22,7 @@ eta, count = option("eta", 1.5), option("rays", 2000)
 
 # %% [markdown]
 # ## A camera
-# It stands above the scene and looks down a little: its own y points down, its z forward.
+# It is above the scene and looks down a little: its own y points down, its z forward.
 
 # %%
 width, height = size, size * 5 // 8
@@ -32,7 +32,7 @@ origins, ways = mine.camera_rays(width, height, focal, focal, width / 2, height 
 
 # %% [markdown]
 # ## A ring of triangles
-# The tree is asked with counters, one for boxes and one for triangles.
+# Two counters: tests of boxes and tests of triangles.
 
 
 # %%
@@ -51,7 +51,7 @@ def ring(turns, sides):
 
 
 def look(corners, origins, ways):
-    """(t, triangle, boxes asked for, triangles asked for), each (R,), of rays."""
+    """(t, triangle, tested boxes, tested triangles), each (R,), of rays."""
     boxes, first, many, order = mine.build_bvh(corners.min(axis=1), corners.max(axis=1))
     t, number = np.zeros(len(origins)), np.zeros(len(origins), int)
     cost = np.zeros((2, len(origins)), int)
@@ -86,13 +86,13 @@ seen = np.where(number >= 0, 0.15 + 0.85 * np.abs(towards), 1.0)
 
 # %% [markdown]
 # ## A ball of glass over a floor
-# A ray goes in and out, mirrored inside as often as it takes, and then sees the floor or the sky.
-# What is mirrored outside is left out. This camera looks level, so the horizon is behind the ball.
+# A ray enters and leaves, after any number of internal reflections, and then hits the floor or the
+# sky. Reflection outside is left out. This camera is horizontal: the horizon is behind the ball.
 
 
 # %%
 def world(origins, ways):
-    """Colors (R, 3) of a chequered floor and of the sky."""
+    """Colors (R, 3) of a checkered floor and of the sky."""
     down = ways[:, 1] < -1e-6
     t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
     x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
@@ -116,8 +116,8 @@ glass = world(place, way)
 print(f"glass with eta {eta}: {inside.sum()} rays are still inside")
 
 # %% [markdown]
-# ## A march and its derivative
-# Two balls that melt into each other; the derivative is that of t by the radius of the left one.
+# ## Sphere tracing and its derivative
+# A smooth union of two balls; the derivative of t is with respect to the radius of the left one.
 
 
 # %%
@@ -131,7 +131,7 @@ def melted(radius=1.0, blend=0.5):
         share = np.clip(0.5 + 0.5 * (two - one) / blend, 0, 1)
         value = share * one + (1 - share) * two - blend * share * (1 - share)
         slopes = [part / far[:, None] for part, far in zip(parts, away, strict=True)]
-        # The derivative by the share itself is zero wherever it is not cut off.
+        # The derivative with respect to the share is zero wherever it is not clipped.
         return value, share[:, None] * slopes[0] + (1 - share)[:, None] * slopes[1], -share
 
     return shape
@@ -143,12 +143,12 @@ more, less = (mine.march_sdf(melted(1 + e), origins, ways, 20.0, 500)[0] for e i
 kept = np.isfinite(t_march) & np.isfinite(more) & np.isfinite(less) & (np.abs(d_t) < 5)
 apart = (more[kept] - less[kept]) / (2 * eps)
 worst = np.abs(apart - d_t[kept]).max() if kept.any() else np.inf
-print(f"march: your derivative is {worst:.1e} from differences of your t")
+print(f"sphere tracing: your derivative is {worst:.1e} from finite differences of your t")
 
 # %% [markdown]
 # ## Embree, by the C++ core
-# Random rays through the ring. Rays within 1e-7 of an edge may be told apart differently: the
-# core's triangles are in float32.
+# Random rays through the ring. Rays within 1e-7 of an edge may hit in one and miss in the other:
+# the core's triangles are in float32.
 
 # %%
 rng = np.random.default_rng(7)
@@ -168,12 +168,12 @@ else:
     differ = int((np.isfinite(its) != np.isfinite(t_mine)).sum())
     off = np.abs(t_mine[near] / its[near] - 1).max()
     print(
-        f"core: {near.sum()} of {count} rays meet the ring, {differ} are told apart, "
+        f"core: {near.sum()} of {count} rays hit the ring, {differ} in one of the two only, "
         f"t is {off:.1e} from yours"
     )
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 # %%
 figure = Figure(figsize=(9, 6), layout="constrained")
@@ -182,7 +182,7 @@ shape = (height, width)
 axes[0, 0].imshow(seen.reshape(shape), cmap="gray", vmin=0, vmax=1)
 axes[0, 0].set(title=f"{len(corners)} triangles")
 drawn = axes[0, 1].imshow(asked.reshape(shape), vmin=0)
-figure.colorbar(drawn, ax=axes[0, 1], label="boxes asked for", shrink=0.8)
+figure.colorbar(drawn, ax=axes[0, 1], label="tested boxes", shrink=0.8)
 axes[1, 0].imshow(np.clip(glass, 0, 1).reshape(*shape, 3))
 axes[1, 0].set(title=f"glass, eta = {eta}")
 drawn = axes[1, 1].imshow(d_t.reshape(shape), cmap="RdBu", vmin=-4, vmax=4)

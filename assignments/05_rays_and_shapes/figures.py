@@ -14,7 +14,7 @@ from photograd_course.viz.style import RED as CRIMSON
 
 
 def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
-    """How far off a small sphere is met from far away, by two formulas."""
+    """Error of the hits of a small sphere from far away, by two formulas."""
     rng = np.random.default_rng(1)
     n, d = _units(rng, 200), _units(rng, 200)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
@@ -42,13 +42,13 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
     axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
     note(axes, "quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON)
     note(axes, "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE)
-    axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
+    axes.set(xlabel="distance of the origin  [radii]", ylabel="error of the hit  [radii]")
     plain_axes(axes)
     return figure, facts
 
 
 def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
-    """Weights of two triangles; rays onto edges that no triangle meets."""
+    """Weights of two triangles; rays onto edges that miss all triangles."""
     size = 36
     y, x = (np.mgrid[:size, :size] + 0.5) / size
     square = np.array([[[0, 0, 1], [1, 0, 1], [1, 1, 1]], [[0, 0, 1], [1, 1, 1], [0, 1, 1.0]]])
@@ -74,9 +74,9 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     lost_by_corner = ~_from_a_corner(places - 4 * ways, ways, corners).any(axis=1)
     facts: Facts = {
-        "none is lost": Fact(not any(lost)),
-        "from a corner more than one in a hundred": Fact(np.mean(lost_by_corner), 0.01, 1.0),
-        "weights give back the place": Fact(max(sums, default=1.0), 0.0, 1e-12),
+        "none misses": Fact(not any(lost)),
+        "relative to a corner more than one in a hundred": Fact(np.mean(lost_by_corner), 0.01, 1.0),
+        "weights reproduce the hit point": Fact(max(sums, default=1.0), 0.0, 1e-12),
     }
     figure, (left, right) = subplots(7.0, 3.3, 1, 2)
     left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
@@ -90,13 +90,13 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
         right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
     right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
     right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
-    title = f"lost from a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
+    title = f"misses relative to a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
     right.set(xticks=[], yticks=[], aspect="equal", title=title)
     return figure, facts
 
 
 def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
-    """Rays through a ball of glass; the angle behind a surface by that before it."""
+    """Rays through a ball of glass; angle of refraction by angle of incidence."""
     eta = 1.5
     heights = np.concatenate([np.linspace(-0.9, 0.9, 13), [0.05]])
     start = np.stack([np.full(14, -2.0), heights, np.zeros(14)], axis=1)
@@ -115,10 +115,10 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
     critical = np.degrees(angle[got_out].max(initial=0.0))
     facts: Facts = {
-        "the middle crosses 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
+        "rays near the axis cross 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
         "the outer ones nearer": Fact(0.5 < crossing[0] < 1.2),
-        "all get in and out": Fact(entered.all() and left_it.all()),
-        "nothing gets out beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
+        "all enter and leave": Fact(entered.all() and left_it.all()),
+        "nothing leaves beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
     }
     figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
     left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
@@ -131,14 +131,14 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     right.plot(degrees, _angle(bent), color=BLUE)
     right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
     note(right, "into glass", (60, 35), (0, -14), color=BLUE)
-    note(right, "out of it", (35, 60), (-52, 4), color=ORANGE)
-    right.set(xlabel="angle before  [°]", ylabel="behind  [°]", xlim=(0, 90), ylim=(0, 90))
+    note(right, "out of glass", (35, 60), (-52, 4), color=ORANGE)
+    right.set(xlabel="incidence  [°]", ylabel="refraction  [°]", xlim=(0, 90), ylim=(0, 90))
     plain_axes(right)
     return figure, facts
 
 
 def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
-    """Two marches; the derivative of t by a radius."""
+    """Sphere tracing of two rays; the derivative of t with respect to a radius."""
     asked: list[Array] = []
 
     def scene(places: Array) -> tuple[Array, Array, Array]:
@@ -165,15 +165,15 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     ends = [module.march_sdf(_ball(1 + e), origins, ways, 20.0, 3000)[0] for e in (-eps, eps)]
     apart = (_finite(ends[1]) - _finite(ends[0])) / (2 * eps)
     facts: Facts = {
-        "both arrive at the wall": Fact(max(abs(each[1] - 6) for each in walks) < 1e-8),
-        "the grazing ray asks three times as often or more": Fact(
+        "both hit the wall": Fact(max(abs(each[1] - 6) for each in walks) < 1e-8),
+        "the grazing ray takes three times as many evaluations or more": Fact(
             len(walks[0][0]) / len(walks[1][0]), 3.0, 30.0
         ),
         "no step is longer than the distance": Fact(
             len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()
         ),
-        "differences agree": Fact(np.abs(slopes - apart).max(), 0.0, 1e-3),
-        "towards the outline it grows": Fact(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
+        "finite differences agree": Fact(np.abs(slopes - apart).max(), 0.0, 1e-3),
+        "toward the silhouette it grows": Fact(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
     }
     figure, (left, right) = subplots(7.0, 3.2, 1, 2, width_ratios=(1.4, 1))
     left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
@@ -193,7 +193,7 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
-    """Boxes that each pixel asks for; boxes by how many triangles there are."""
+    """Boxes tested for each pixel; boxes by the number of triangles."""
     width, height = 50, 30
     pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
     origins, ways = module.camera_rays(width, height, 29.0, 29.0, width / 2, height / 2, pose)
@@ -210,23 +210,23 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
-        "the answers are those of asking every triangle": Fact(
+        "the hits are those of testing every triangle": Fact(
             np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
         ),
-        "beside the root's box one box is enough": Fact(counts.min() == 1),
-        "the dearest pixel asks for some 60": Fact(int(counts.max()), 45, 75),
+        "a miss of the root tests one box": Fact(counts.min() == 1),
+        "the most expensive pixel tests some 60": Fact(int(counts.max()), 45, 75),
         "from 256 to 4096 less than twice as many": Fact(means[3] / means[1], 1.0, 2.0),
         "with 256 triangles about 25": Fact(means[1], 22.0, 28.0),
     }
     figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
     drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
-    figure.colorbar(drawn, ax=left, label="boxes asked for", shrink=0.8)
+    figure.colorbar(drawn, ax=left, label="tested boxes", shrink=0.8)
     left.set(xticks=[], yticks=[])
     right.loglog(sizes, sizes, color=GRAY, linewidth=1)
     right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
     note(right, "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK)
     note(right, "boxes of the tree", (sizes[1], means[1]), (-20, -16), color=BLUE)
-    right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
+    right.set(xlabel="triangles", ylabel="tests per ray", ylim=(5, 8000))
     right.set_xticks(sizes, [str(k) for k in sizes])
     right.minorticks_off()
     plain_axes(right)
@@ -239,7 +239,7 @@ def _units(rng: np.random.Generator, count: int) -> Array:
 
 
 def _off(origins: Array, ways: Array, t: Array) -> float:
-    """How far off the unit sphere the worst place is."""
+    """Largest distance of a point from the unit sphere."""
     if not len(t):
         return 1.0
     return float(np.abs(np.linalg.norm(origins + t[:, None] * ways, axis=1) - 1).max())
@@ -277,7 +277,7 @@ def _sheet(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
 
 
 def _from_a_corner(origins: Array, ways: Array, corners: Array) -> Array:
-    """Whether rays meet triangles (R, M), measured from the corner a of each [Moller1997]."""
+    """Whether rays hit triangles (R, M), relative to the corner a of each [Moller1997]."""
     a, b, c = np.moveaxis(corners, 1, 0)
     origin, way = origins[:, None], ways[:, None]
     p, q = np.cross(way, c - a), np.cross(origin - a, b - a)
@@ -300,7 +300,7 @@ def _ring(turns: int, sides: int) -> Array:
 
 
 def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> tuple[Array, Array]:
-    """(boxes asked for, t), both (R,), of rays through the tree of triangles."""
+    """(tested boxes, t), both (R,), of rays through the tree of triangles."""
     boxes, first, count, order = module.build_bvh(corners.min(axis=1), corners.max(axis=1))
     asked, found = np.zeros(len(origins), int), np.zeros(len(origins))
     for r, (o, d) in enumerate(zip(origins, ways, strict=True)):

@@ -1,10 +1,10 @@
-"""Where rays meet things, and how to find out without asking every thing.
+"""Intersections of rays with shapes, and the closest hit without a test of every primitive.
 
-A ray is an origin o and a direction d, and t counts along it: the place at t is o + t d. Directions
-may have any length but zero, unless a function asks for length 1. What a ray *meets* is the first
-thing at t > T_MIN, so that a ray that starts on a surface does not meet it there again. Where
-nothing is met t is infinite. The world is right-handed with y up; a camera looks along its own +z,
-with x to the right and y down, as OpenCV has it.
+A ray has an origin o and a direction d; the point at t is o + t d. Directions have any length but
+zero, unless a function requires length 1. The *closest hit* is the first intersection at t > T_MIN,
+so that a ray that starts on a surface does not hit it there again. Where nothing is hit t is
+infinite. The world is right-handed with y up; a camera looks along its own +z, with x to the right
+and y down, as in OpenCV.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 05` tells how
 far you are. The other functions are given and stay as they are. Values are float64, indices int64.
@@ -26,23 +26,24 @@ PerTriangle = Annotated[np.ndarray, "M"]
 Weights = Annotated[np.ndarray, "M 2"]
 Boxes = Annotated[np.ndarray, "N 2 3"]
 Box = Annotated[np.ndarray, "2 3"]
-PerThing = Annotated[np.ndarray, "K"]
+PerPrimitive = Annotated[np.ndarray, "K"]
 Corners = Annotated[np.ndarray, "P 3"]
 Indices = Annotated[np.ndarray, "N"]  # int64
 Sdf = Callable[[Vectors], tuple[PerRay, Vectors, PerRay]]
 
-T_MIN = 1e-9  # nothing nearer counts as met
-CLOSE = 1e-9  # a march has arrived when less is left
-LEAF = 2  # things in a leaf of a tree, at most
+T_MIN = 1e-9  # nearer intersections do not count
+CLOSE = 1e-9  # distance below which sphere tracing has converged
+LEAF = 2  # largest number of primitives in a leaf
 
 
 def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
     """One ray through the center of each pixel of a pinhole camera.
 
     Args:
-        width, height: of the picture, in pixels.
+        width, height: of the image, in pixels.
         fx, fy, cx, cy: focal lengths and principal point, in pixels.
-        world_from_camera: (3, 4), turns and then moves places of the camera into the world.
+        world_from_camera: (3, 4), a rotation and a translation that take points of the camera's
+            frame into the world.
 
     Returns:
         (origins, directions), both (height width, 3), row by row from the top; unit directions.
@@ -55,7 +56,7 @@ def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
 
 
 def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: float) -> PerRay:
-    """Where rays meet a sphere.
+    """Intersections of rays with a sphere.
 
     Args:
         origins, directions: (R, 3); directions of any length.
@@ -63,9 +64,8 @@ def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: fl
         radius: a number above 0.
 
     Returns:
-        t (R,), the first one above T_MIN at which the ray is on the sphere, from outside or from
-        inside; infinite where there is none. A ray that touches the sphere in one place meets it.
-        Handout equations (5) and (6).
+        t (R,) of the first intersection above T_MIN, from outside or from inside; infinite where
+        there is none. A tangent ray hits the sphere. Handout equations (5) and (6).
     """
     # >>> solution 05.1
     offset = origins - center
@@ -82,7 +82,7 @@ def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: fl
 def hit_triangle(
     origin: Vector, direction: Vector, corners: Triangles
 ) -> tuple[PerTriangle, Weights]:
-    """Where one ray meets each of many triangles, from either side.
+    """Intersections of one ray with many triangles, from either side.
 
     Args:
         origin, direction: (3,); a direction of any length.
@@ -90,9 +90,9 @@ def hit_triangle(
 
     Returns:
         (t, weights): t (M,), infinite where the triangle is missed, lies in the plane of the ray or
-        has no area; weights (M, 2) of the corners b and c in the place that is met, zeros where
-        none is. A ray that passes exactly between two triangles with a common edge meets one of
-        them or both. Handout equations (7) to (9).
+        has no area; weights (M, 2), the barycentric coordinates of the hit for the corners b and c,
+        zeros for a miss. Of two triangles with a common edge, a ray exactly through the edge hits
+        one or both. Handout equations (7) to (9).
     """
     # >>> solution 05.2
     a, b, c = np.moveaxis(corners - origin, 1, 0)
@@ -108,16 +108,17 @@ def hit_triangle(
 
 
 def refract(directions: Vectors, normals: Vectors, eta: float) -> tuple[Vectors, PerRay]:
-    """Where light goes on at a smooth surface of glass, by Snell's law.
+    """Refraction or total internal reflection at a smooth surface, by Snell's law.
 
     Args:
-        directions: (R, 3), unit, the way the ray travels: *into* the surface.
+        directions: (R, 3), unit, of travel: they point *into* the surface.
         normals: (R, 3), unit, always to the outside, whichever side the ray comes from.
         eta: the index of refraction inside over that outside, above 0.
 
     Returns:
-        (out, through): out (R, 3), unit: the refracted ray, or the mirrored one where none gets
-        through; through (R,) of bool, which of the two it is. Handout equations (10) to (12).
+        (out, through): out (R, 3), unit: the refracted direction, or the reflected one for total
+        internal reflection; through (R,) of bool, whether it is refracted. Handout equations (10)
+        to (12).
     """
     # >>> solution 05.3
     cosine = -np.sum(directions * normals, axis=1, keepdims=True)
@@ -135,20 +136,21 @@ def refract(directions: Vectors, normals: Vectors, eta: float) -> tuple[Vectors,
 def march_sdf(
     sdf: Sdf, origins: Vectors, directions: Vectors, t_max: float, steps: int
 ) -> tuple[PerRay, PerRay]:
-    """Where rays meet a surface of which only the distance is known; and how that depends on it.
+    """Sphere tracing of a signed distance field, and the derivative of t.
 
     Args:
-        sdf: a function from places (M, 3) to (distance (M,), gradient (M, 3), by_parameter (M,)):
-            the distance to the surface, below 0 inside; its derivative by the place; its derivative
-            by some parameter p of the shape. It is what costs: ask for as few places as you can,
-            and never for none.
+        sdf: a function from points (M, 3) to (distance (M,), gradient (M, 3), by_parameter (M,)):
+            the distance to the surface, below 0 inside; its derivatives with respect to the point
+            and with respect to some parameter p of the shape. Evaluations are counted: use as few
+            points as you can, and never an empty array.
         origins, directions: (R, 3); unit directions.
-        t_max: a surface farther away is not met.
-        steps: a ray that has not arrived when it has asked so often meets nothing, 1 or more.
+        t_max: a surface farther away is missed.
+        steps: a ray that has not converged after this many evaluations misses, 1 or more.
 
     Returns:
         (t, d_t), both (R,): the first t at which |distance| is below CLOSE, infinite where there is
-        none; its derivative by p, zero where there is none. Handout equations (13) to (15).
+        none; its derivative with respect to p, zero where there is none. Handout equations (13) to
+        (15).
     """
     # >>> solution 05.4
     t, found, d_t = np.zeros(len(origins)), np.full(len(origins), np.inf), np.zeros(len(origins))
@@ -168,23 +170,23 @@ def march_sdf(
 
 
 def build_bvh(low: Corners, high: Corners) -> tuple[Boxes, Indices, Indices, Indices]:
-    """A tree of boxes around things, of which only the own box is known.
+    """A bounding volume hierarchy of primitives, given by their boxes.
 
     Args:
-        low, high: (P, 3), the lower and the upper corner of each thing's box; P is 1 or more.
+        low, high: (P, 3), the lower and the upper corner of each primitive's box; P is 1 or more.
 
     Returns:
         (boxes, first, count, order) with N nodes, of which 0 is the root: boxes (N, 2, 3), the
-        smallest that hold all things of a node; count (N,), how many things lie in a leaf, 1 to
-        LEAF, and 0 for any other node; first (N,): the things of a leaf are order[first] to
-        order[first + count - 1], the children of another node are the nodes first and first + 1;
-        order (P,), the numbers of all things. Handout equations (16) and (17).
+        smallest that bound all primitives of a node; count (N,), the number of primitives in a
+        leaf, 1 to LEAF, and 0 for any other node; first (N,): the primitives of a leaf are
+        order[first] to order[first + count - 1], the children of another node are the nodes first
+        and first + 1; order (P,), the indices of all primitives. Handout equations (16) and (17).
     """
     # >>> solution 05.5
     twice_middle = low + high
     order = np.arange(len(low))
     boxes, first, count, todo = [], [], [], [(0, len(low))]
-    for start, stop in todo:  # which grows meanwhile
+    for start, stop in todo:  # grows during the loop
         mine = order[start:stop]
         boxes.append([low[mine].min(axis=0), high[mine].max(axis=0)])
         if stop - start <= LEAF:
@@ -206,21 +208,21 @@ def traverse(
     count: Indices,
     order: Indices,
     box: Callable[[int], Box],
-    meet: Callable[[Indices], PerThing],
+    meet: Callable[[Indices], PerPrimitive],
     origin: Vector,
     direction: Vector,
 ) -> tuple[float, int]:
-    """The first thing that a ray meets, with few questions.
+    """The closest hit of a ray, with few tests.
 
     Args:
         first (N,), count (N,), order (P,): of `build_bvh`.
-        box: a function from the number of a node to its box (2, 3).
-        meet: a function from the numbers (K,) of things to t (K,), where the ray meets each,
-            infinite where it does not. Both are what costs: ask as little as you can.
+        box: a function from the index of a node to its box (2, 3).
+        meet: a function from the indices (K,) of primitives to t (K,), where the ray hits each,
+            infinite for a miss. Calls of both are counted: make as few as you can.
         origin, direction: (3,); a direction of any length, single components may be zero.
 
     Returns:
-        (t, number) of the nearest thing; infinite and -1 if the ray meets nothing. Handout
+        (t, number): t and the index of the nearest primitive; infinite and -1 for a miss. Handout
         equations (18) to (20).
     """
     # >>> solution 05.6
@@ -253,14 +255,14 @@ def traverse(
 
 
 def trace_mesh(corners, origins, directions):
-    """The nearest triangle of each ray, by your tree.
+    """The closest triangle of each ray, by your tree.
 
     Args:
         corners: (M, 3, 3), triangles.
         origins, directions: (R, 3).
 
     Returns:
-        (t (R,), number (R,)); infinite and -1 for rays that meet nothing.
+        (t (R,), number (R,)); infinite and -1 for rays that hit nothing.
     """
     boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
     found = [

@@ -1,10 +1,10 @@
 # %% [markdown]
-# # A room by all its bounces, and a material found in a picture
-# Draws a room with your path tracer, and a table with your direct light, your gradient, and what
-# `recover` makes of its picture. Beside them stands what the C++ core found; where the core is
-# installed it is asked anew. Never graded. `python explore.py` takes `--size` (pixels across),
-# `--depth`, `--samples` (a pixel, of the room), `--steps` (of the fit) and `--roughness` (of the
-# table; the core's shipped answers are for 0.35, and with another one your own picture is fitted).
+# # A room with all bounces, and a material recovered from an image
+# Renders a room with your path tracer, and a table with your direct light, your gradient, and the
+# result of `recover`. Beside them stand the results of the C++ core; where the core is installed
+# they are computed anew. Never graded. `python explore.py` takes `--size` (pixels across),
+# `--depth`, `--samples` (per pixel, of the room), `--steps` (of the fit) and `--roughness` (of the
+# table; the stored results are for 0.35, and with another value your own image is fitted).
 
 # %%
 from __future__ import annotations
@@ -38,7 +38,7 @@ for _ in range(samples):
     total += seen
     squares += seen**2
 picture = total / samples
-# The spread of a pixel's samples says how noisy their mean is; one sample alone has none.
+# The variance of the samples of a pixel estimates the noise of their mean; it takes two samples.
 spread = (squares - samples * picture**2).mean() / max(samples - 1, 1)
 noise = np.sqrt(max(spread, 0) / samples) / max(picture.mean(), 1e-9)
 said = f"noise {noise:.0%}" if samples > 1 else "noise unknown (take 2 samples or more)"
@@ -49,7 +49,7 @@ print(
 
 # %% [markdown]
 # ## The table
-# Direct light alone, many samples, and how each pixel changes with the roughness of the table.
+# Direct light alone, many samples, and the derivative of each pixel with respect to roughness.
 
 # %%
 rays, truth = mine.table_rays(), mine.demo_table(roughness=roughness)
@@ -69,7 +69,7 @@ theirs, their_slope, found = mine.core_answers()
 
 # %%
 def of_the_core(spp):
-    """(direct light (70, 3), its derivative by roughness (70,)) of the table by the core."""
+    """(direct light (70, 3), its derivative with respect to roughness (70,)), by the core."""
     transport = importlib.import_module("photograd.transport")
     shapes = importlib.import_module("photograd.transport.shapes")
     camera = importlib.import_module("photograd.capture.camera").Camera
@@ -109,30 +109,30 @@ def apart(a, b):
     return float(np.linalg.norm(a - b) / np.linalg.norm(b))
 
 
-shipped, name, like_shipped = theirs.reshape(70, 3), "core, as shipped", roughness == 0.35
+shipped, name, like_shipped = theirs.reshape(70, 3), "core, stored", roughness == 0.35
 target, whose = shipped, "the core's"
 try:
     light, change = of_the_core(4000)
 except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
     if like_shipped:
-        print("core:  not installed; the shipped answers stand for it")
+        print("core:  not installed; its stored results are shown")
     else:
-        print("core:  not installed, and its shipped answers are for 0.35: not compared")
+        print("core:  not installed, and its stored results are for 0.35: not compared")
         target, whose, name = table, "your own", "core, for 0.35"
 else:
-    told = f", {apart(light, shipped):.1%} from its shipped picture" if like_shipped else ""
-    print(f"core:  asked anew{told}")
+    told = f", {apart(light, shipped):.1%} from its stored image" if like_shipped else ""
+    print(f"core:  computed anew{told}")
     theirs, their_slope, name = light.reshape(7, 10, 3), change.reshape(7, 10), "core"
     target = light
 if whose == "the core's":
     print(
-        f"table: your picture is {apart(table, target):.1%} from the core's, your gradient "
+        f"table: your image is {apart(table, target):.1%} from the core's, your gradient "
         f"{apart(slope, their_slope.ravel()):.1%}"
     )
 
 # %% [markdown]
-# ## What the picture says about the material
-# From gray and roughness 0.6, in the core's picture; in yours, where the core has none to offer.
+# ## The recovered material
+# From gray and roughness 0.6, to the image of the core, or to yours where the core has none.
 
 # %%
 start = mine.demo_table((0.5, 0.5, 0.5), 0.6)
@@ -141,7 +141,7 @@ color, rough, track = mine.recover(start, 0, *rays, target, steps, rng)
 goal = np.array([0.8, 0.5, 0.2, roughness])
 told = f"; the core found {found[:3].round(3)}, {found[3]:.3f}" if like_shipped else ""
 print(
-    f"fit:   in {whose} picture, base color {color.round(3)}, roughness {rough:.3f} in {steps} "
+    f"fit:   to {whose} image, base color {color.round(3)}, roughness {rough:.3f} in {steps} "
     f"steps, {time.perf_counter() - before:.1f} s{told}; it is 0.8, 0.5, 0.2 and {roughness:g}"
 )
 near = np.abs(track - goal) < 0.02
@@ -153,7 +153,7 @@ print(
 )
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 # %%
 figure = Figure(figsize=(10, 6), layout="constrained")

@@ -21,7 +21,7 @@ def irradiance(corners: Array) -> float:
 
 
 def alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
-    """Direct light by one strategy alone, with weight 1: by lamps, by the material."""
+    """Direct light by one strategy alone, with weight 1: light sampling, BSDF sampling."""
     found = []
     for by_lamp in (True, False):
         if by_lamp:
@@ -40,7 +40,7 @@ def alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface:
 
 
 def furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
-    """(scene, origins, directions): a closed cube that shines, and rays inside."""
+    """(scene, origins, directions): a closed cube that emits, and rays inside."""
     faces = (
         ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
         ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
@@ -55,7 +55,7 @@ def furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator)
 
 
 def fine(module: ModuleType, scene: dict, place: dict) -> float:
-    """Mean of the channels of direct light from the one lamp, by a fine sum over it."""
+    """Mean of the channels of direct light from the one light, by a fine quadrature over it."""
     x, w = np.polynomial.legendre.leggauss(24)
     u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
     hit = module.repeated(place, u.size)
@@ -68,7 +68,7 @@ def fine(module: ModuleType, scene: dict, place: dict) -> float:
 
 
 def through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
-    """What is added where the density of the material is differentiated, too."""
+    """The term that is added where the density of the material is differentiated, too."""
     wi = module.sample_brdf(scene, hit, u)
     there = module.see(scene, hit["points"], wi)
     p = module.light_pdf(scene, there["thing"], wi, there["t"])
@@ -82,7 +82,7 @@ def through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value:
 
 
 def descent(module: ModuleType, shared: bool) -> Array:
-    """A matte base color by plain descent, one sample a pixel, 110 steps."""
+    """A matte base color by gradient descent, one sample per pixel, 110 steps."""
     lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
     floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
     scene = module.assemble([floor, lamp])

@@ -16,7 +16,7 @@ GAMMA = 1 / 2.2
 
 
 def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
-    """Irradiance beside a lamp, by the density of the handout and by two wrong ones."""
+    """Irradiance below a light, by the density of the handout and by two wrong ones."""
     aside = np.linspace(0.0, 4.0, 33)
     lamp = module.rectangle([-0.5, 2, -0.5], [1, 0, 0], [0, 0, 1], emission=1.0)
     scene = module.assemble([lamp])
@@ -37,9 +37,9 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
     ours, by_area, no_cosine, right = (np.array(e) for e in (ours, by_area, no_cosine, right))
     facts: Facts = {
         "dots on the line": Fact(np.abs(ours / right - 1).max(), 0.0, 1e-6),
-        "by area 4 times too bright or more": Fact((by_area / right).min(), 4.0, 8.0),
+        "per area 4 times too bright or more": Fact((by_area / right).min(), 4.0, 8.0),
         "more than 40 times at 4 m": Fact(by_area[-1] / right[-1], 40.0, 48.0),
-        "without the cosine right below the lamp": Fact(no_cosine[0] / right[0], 1.0, 1.1),
+        "without the cosine right below the light": Fact(no_cosine[0] / right[0], 1.0, 1.1),
         "at 4 m twice as bright or more": Fact(no_cosine[-1] / right[-1], 2.0, 3.0),
     }
     figure, axes = subplots(7.0, 2.9)
@@ -47,16 +47,16 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
     axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
     axes.semilogy(aside, by_area, color=CRIMSON)
     axes.semilogy(aside, no_cosine, color=ORANGE)
-    note(axes, "density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON)
-    note(axes, "without the lamp's cosine", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
+    note(axes, "density per area", (2.6, by_area[21]), (0, 5), color=CRIMSON)
+    note(axes, "without the cosine at the light", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
     note(axes, "yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE)
-    axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
+    axes.set(xlabel="horizontal distance  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
     plain_axes(axes)
     return figure, facts
 
 
 def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
-    """Four strips of metal below a lamp, by three strategies; their noise."""
+    """Four strips of metal below a light, by three strategies; their noise."""
     roughness, width, height, samples, shown_ones = (0.2, 0.3, 0.5, 0.8), 40, 28, 64, 4
     strips = [
         module.rectangle(
@@ -80,8 +80,8 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     pictures = [*parts.alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
     pictures = [p[:, 0].reshape(-1, samples) for p in pictures]
     strip = hit["thing"][on]
-    # Of a sample from its pixel, over the strip's brightness, both as root mean squares: dark
-    # pixels, of which a polished strip has many, count little in either.
+    # Error of a sample over the brightness of the strip, both as root mean squares: dark pixels, of
+    # which a smooth strip has many, count little in either.
     bright = pictures[2].mean(axis=1)
     spread = np.array(
         [
@@ -95,18 +95,18 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     means = np.array([[p[strip == k].mean() for k in range(4)] for p in pictures])
     best = spread[:2].min(axis=0)
     facts: Facts = {
-        "lamps alone: noisy where it is polished": Fact(spread[0, 0] / spread[0, 3], 3.0, 30.0),
-        "metal alone: noisy where it is rough": Fact(spread[1, 3] / spread[1, 0], 1.5, 10.0),
+        "light sampling: noisy where it is smooth": Fact(spread[0, 0] / spread[0, 3], 3.0, 30.0),
+        "BSDF sampling: noisy where it is rough": Fact(spread[1, 3] / spread[1, 0], 1.5, 10.0),
         "its tallest bar is the rough strip's": Fact(spread[1].argmax() == 3),
-        "polished: lamps alone are noisier": Fact(spread[0, 0] / spread[1, 0], 1.5, 30.0),
-        "rough: the metal alone is noisier": Fact(spread[1, 3] / spread[0, 3], 1.5, 30.0),
+        "smooth: light sampling is noisier": Fact(spread[0, 0] / spread[1, 0], 1.5, 30.0),
+        "rough: BSDF sampling is noisier": Fact(spread[1, 3] / spread[0, 3], 1.5, 30.0),
         "both: never much worse than the better one": Fact((spread[2] / best).max(), 0.2, 1.3),
-        "polished: the metal's mean": Fact(means[2, 0] / means[1, 0], 0.8, 1.25),
-        "rough: the lamps' mean": Fact(means[2, 3] / means[0, 3], 0.8, 1.25),
+        "smooth: the mean of BSDF sampling": Fact(means[2, 0] / means[1, 0], 0.8, 1.25),
+        "rough: the mean of light sampling": Fact(means[2, 3] / means[0, 3], 0.8, 1.25),
     }
     figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.3, 1))
     for column, (name, p) in enumerate(
-        zip(("lamps alone", "metal alone", "both"), pictures, strict=True)
+        zip(("light sampling", "BSDF sampling", "both (MIS)"), pictures, strict=True)
     ):
         shown = np.zeros(width * height)
         shown[on] = p[:, :shown_ones].mean(axis=1)
@@ -114,7 +114,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
         gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
         axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
         axes[0, column].set(xticks=[], yticks=[], title=name)
-        for k, each in enumerate(roughness):  # the strip's name, where its front edge is seen
+        for k, each in enumerate(roughness):  # the roughness of the strip, at its front edge
             low = np.flatnonzero(on)[strip == k].max() // width
             row = np.flatnonzero(on)[strip == k]
             middle = np.median(row[row // width == low] % width)
@@ -150,7 +150,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
     off = np.abs(np.array(means) - right) / np.maximum(errors, 1e-3)
     ceiling = [float(each.reshape(height, width, 3)[0, 12:24].mean()) for each in pictures[1:]]
     facts: Facts = {
-        "depth 1 is the lamp alone": Fact((pictures[0].sum(axis=1) > 0).mean(), 0.003, 0.1),
+        "depth 1 is the light alone": Fact((pictures[0].sum(axis=1) > 0).mean(), 0.003, 0.1),
         "direct light leaves the ceiling black": Fact(ceiling[0], 0.0, 1e-9),
         "bounces light it": Fact(ceiling[1], 0.02, 1.0),
         "dots on the line": Fact(off.max(), 0.0, 4.5),
@@ -172,7 +172,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
-    """Mean, surfaces visited and price, with roulette and without."""
+    """Mean, vertices per path and cost, with roulette and without."""
     albedo, depths = 0.4, np.array([2, 4, 8, 12])
     rng = np.random.default_rng(5)
     room, origins, directions = parts.furnace(module, albedo, 2500, rng)
@@ -191,7 +191,7 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
             module.ALWAYS, module.see = limit, watched
             seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
             module.ALWAYS, module.see = always, see
-            # Of each surface three rays start: two for direct light, one to go on.
+            # Three rays start at each vertex: two for direct light, one to continue.
             visited = counted[0] / len(origins) / 3
             rows.append(
                 (seen.mean(), seen.std() / np.sqrt(len(seen)), visited, seen.var() * visited)
@@ -204,9 +204,9 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e in means)
     facts: Facts = {
         "the means agree with the series": Fact(off, 0.0, 4.5),
-        "with roulette below 4 surfaces": Fact(visits[0][-1], 2.0, 4.0),
+        "with roulette below 4 vertices": Fact(visits[0][-1], 2.0, 4.0),
         "without it as many as the depth allows": Fact(visits[1][-1], 10.0, 13.0),
-        "dearer at depth 8": Fact((prices[0] / prices[1])[2], 1.1, 2.0),
+        "more expensive at depth 8": Fact((prices[0] / prices[1])[2], 1.1, 2.0),
         "about even at depth 12": Fact((prices[0] / prices[1])[3], 0.7, 1.4),
     }
     figure, axes = subplots(7.0, 2.4, 1, 3)
@@ -219,14 +219,14 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
         axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
     axes[0].plot(depths, right, color=GRAY, zorder=0)
     axes[1].legend(frameon=False)
-    for each, title in zip(axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True):
+    for each, title in zip(axes, ("mean", "vertices per path", "variance × vertices"), strict=True):
         each.set(xlabel="depth", title=title)
         plain_axes(each)
     return figure, facts
 
 
 def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
-    """The gradient by roughness, and a fit with shared random numbers."""
+    """The gradient with respect to roughness, and a fit with shared random numbers."""
     rng = np.random.default_rng(6)
     values, n = np.linspace(0.25, 0.75, 6), 1200
     place = {
@@ -260,19 +260,19 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "dots on the line": Fact((np.abs(ours - right) / errors).max(), 0.0, 4.5),
         "crosses are not": Fact((np.abs(wrong - right) / errors).max(), 6.0, 1e4),
-        "own numbers settle at the truth": Fact(tracks[0][-40:].mean(), 0.57, 0.63),
+        "independent numbers settle at the truth": Fact(tracks[0][-40:].mean(), 0.57, 0.63),
         "shared ones about a quarter too dark": Fact(1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
     }
     figure, (left, side) = subplots(7.0, 2.8, 1, 2)
     left.plot(values, right, color=GRAY)
     left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
     left.plot(values, wrong, "x", color=CRIMSON)
-    left.set(xlabel="roughness", title="derivative by roughness")
+    left.set(xlabel="roughness", title="∂ radiance / ∂ roughness")
     side.axhline(0.6, color=GRAY)
     side.plot(tracks[0], color=BLUE, linewidth=1)
     side.plot(tracks[1], color=CRIMSON, linewidth=1)
-    note(side, "shared numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON)
-    note(side, "own numbers", (70, 0.66), (0, 8), color=BLUE)
+    note(side, "shared random numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON)
+    note(side, "independent random numbers", (30, 0.66), (0, 8), color=BLUE)
     side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
     for each in (left, side):
         plain_axes(each)
@@ -298,7 +298,7 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     exact = np.array([0.8, 0.5, 0.2, 0.35])
     found = np.append(color, rough)
     facts: Facts = {
-        "your picture is the core's": Fact(parts.apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your image is the core's": Fact(parts.apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
         "your gradient is the core's": Fact(parts.apart(mine, slope), 0.0, 0.35),
         "base color found within 0.02": Fact(np.abs(found - exact)[:3].max(), 0.0, 0.02),
         "roughness found within 0.02": Fact(abs(found - exact)[3], 0.0, 0.02),

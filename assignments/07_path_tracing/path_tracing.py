@@ -1,15 +1,16 @@
-"""Light that comes straight from lamps, light that bounces on, and a gradient through the first.
+"""Direct light by multiple importance sampling, path tracing, and the gradient of direct light.
 
-A *scene* is a dict of arrays. It has Q rectangles and B balls, T = Q + B things in all, rectangles
+A *scene* is a dict of arrays. It has Q rectangles and B balls, T = Q + B primitives, rectangles
 first. `corners`, `edges_u`, `edges_v` (Q, 3): a corner of each rectangle and the two edges that
-leave it, at right angles; its front is where edge_u x edge_v points. `balls` (B, 4): center and
-radius. `emission` (T, 3): the radiance of the front, 0 for what is no lamp, and for every ball.
-`base_color` (T, 3), `metalness` (T,), `roughness` (T,), 0.045 to 1: the material of glTF from
-assignment 04; `matte` (T,) of bool: no varnish, only base_color / pi.
+start there, at right angles; its front faces the direction edge_u x edge_v. `balls` (B, 4): center
+and radius. `emission` (T, 3): the radiance of the front, 0 for primitives that are no light, and
+for every ball. `base_color` (T, 3), `metalness` (T,), `roughness` (T,), 0.045 to 1: the glTF
+material of assignment 04; `matte` (T,) of bool: no specular coating, only base_color / pi.
 
-N places that are seen are a *hit*, a dict of arrays with N rows: `points` (N, 3), `normals` (N, 3),
-unit, on the side of the viewer, `wo` (N, 3), unit, to the viewer, `front` (N,) of bool, `t` (N,)
-the distance from the viewer, in meters, and `thing` (N,), its number, or -1 where nothing is seen.
+The closest hits of N rays are a *hit*, a dict of arrays with N rows: `points` (N, 3), `normals`
+(N, 3), unit, on the side of the viewer, `wo` (N, 3), unit, to the viewer, `front` (N,) of bool,
+`t` (N,) the distance from the ray origin, in meters, and `thing` (N,), the index of the primitive,
+or -1 where nothing is hit.
 
 Directions are unit vectors that leave the surface; wi leads to the light. Radiance is linear, in
 three channels. Random numbers come as arguments: `u` uniform in [0, 1), or a generator `rng`.
@@ -29,14 +30,14 @@ from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
 PerRow = Annotated[np.ndarray, "N"]
 Vectors = Annotated[np.ndarray, "N 3"]
 Colors = Annotated[np.ndarray, "N 3"]
-ThingColors = Annotated[np.ndarray, "T 3"]
-PerThing = Annotated[np.ndarray, "T"]
+PrimitiveColors = Annotated[np.ndarray, "T 3"]
+PerPrimitive = Annotated[np.ndarray, "T"]
 Indices = Annotated[np.ndarray, "N"]  # int64
 Scene = dict[str, np.ndarray]
 Hit = dict[str, np.ndarray]
 
-T_MIN = 1e-6  # meters; nothing nearer counts as met
-ALWAYS = 2  # at a path's first two places, from the one that is seen on, nobody plays roulette
+T_MIN = 1e-6  # meters; nearer intersections do not count
+ALWAYS = 2  # no roulette at the first vertices of a path, counted from the visible one
 SIDE = 4  # SIDE x SIDE samples of each pixel, in a step of `recover`
 
 # Geometry ----------------------------------------------------------------------------------------
@@ -49,7 +50,7 @@ def front_normals(scene):
 
 
 def meet(scene, origins, directions):
-    """The first thing along each ray: (t (N,), thing (N,)), infinite and -1 where there is none."""
+    """Closest hit of each ray: (t (N,), primitive (N,)), infinite and -1 where there is none."""
     u, v, normals = scene["edges_u"], scene["edges_v"], front_normals(scene)
     slope = directions @ normals.T
     height = origins @ normals.T - np.sum(scene["corners"] * normals, axis=1)
@@ -74,12 +75,12 @@ def meet(scene, origins, directions):
 
 
 def see(scene, origins, directions):
-    """What rays see first: a hit with N rows. Directions (N, 3) are unit vectors."""
+    """The closest hits of N rays: a hit with N rows. Directions (N, 3) are unit vectors."""
     t, thing = meet(scene, origins, directions)
     far = np.where(np.isinf(t), 0.0, t)
     points = origins + far[:, None] * directions
     quads, balls = len(scene["corners"]), scene["balls"]
-    outward = -directions.copy()  # where nothing is seen
+    outward = -directions.copy()  # where nothing is hit
     flat, round_ = (thing >= 0) & (thing < quads), thing >= quads
     outward[flat] = front_normals(scene)[thing[flat]]
     which = balls[thing[round_] - quads]
@@ -97,7 +98,7 @@ def see(scene, origins, directions):
 
 
 def some(hit, rows):
-    """Those rows of a hit: by numbers, or by a mask (N,) of bool."""
+    """Rows of a hit: by indices, or by a mask (N,) of bool."""
     return {name: values[rows] for name, values in hit.items()}
 
 
@@ -120,31 +121,31 @@ def camera_rays(width, height, place, target, degrees):
     return np.tile(np.asarray(place, float), (len(u), 1)), directions
 
 
-# Materials and lamps -----------------------------------------------------------------------------
+# Materials and lights ----------------------------------------------------------------------------
 
 
 def emitted(scene, hit):
-    """The radiance (N, 3) that what is seen sends to the viewer by itself: fronts of lamps do."""
+    """The radiance (N, 3) that a hit emits toward the viewer; 0 but on the fronts of lights."""
     shines = hit["front"] & (hit["thing"] >= 0)
     return np.where(shines[:, None], scene["emission"][hit["thing"]], 0.0)
 
 
 def lamps(scene):
-    """The numbers (K,) of the things that shine."""
+    """The indices (K,) of the primitives that emit."""
     return np.flatnonzero(scene["emission"].any(axis=1))
 
 
 def sample_light(scene, points, u3):
-    """Draw a place on a lamp for each point: of K lamps each alike, of its places each alike.
+    """Sample a point on a light for each point: one of K lights and its area uniformly.
 
     Args:
-        scene: with at least one lamp.
+        scene: with at least one light.
         points: (N, 3).
         u3: (N, 3), uniform in [0, 1).
 
     Returns:
-        (wi (N, 3), distance (N,), thing (N,)): to the place, how far it is, and the lamp. Whether
-        something stands in between is not looked at, nor which side of the lamp is seen.
+        (wi (N, 3), distance (N,), thing (N,)): the direction and the distance to the sampled point,
+        and the light. Neither visibility nor the side of the light is tested.
     """
     numbers = lamps(scene)
     thing = numbers[(u3[:, 0] * len(numbers)).astype(int)]
@@ -155,7 +156,7 @@ def sample_light(scene, points, u3):
 
 
 def _frames(normals):
-    """Two more unit vectors for each normal, and the normal: (N, 3, 3), a vector a row."""
+    """An orthonormal frame around each normal, its last row: (N, 3, 3), a vector a row."""
     low = np.abs(normals).argmin(axis=1)
     x = np.cross(normals, np.eye(3)[low])
     x /= np.linalg.norm(x, axis=1, keepdims=True)
@@ -163,7 +164,7 @@ def _frames(normals):
 
 
 def _local(hit, wi):
-    """wo, wi (N, 3) each, turned so that the normal is +z."""
+    """wo, wi (N, 3) each, in the frame of the surface, where the normal is +z."""
     frames = _frames(hit["normals"])
     return tuple(np.einsum("nij,nj->ni", frames, w) for w in (hit["wo"], wi))
 
@@ -173,7 +174,7 @@ def _material(scene, hit):
 
 
 def brdf(scene, hit, wi):
-    """How much light from wi goes to the viewer, (N, 3) in 1/sr, without the cosine."""
+    """The BRDF for light from wi to the viewer, (N, 3) in 1/sr, without the cosine."""
     wo, wi = _local(hit, wi)
     base_color, metalness, roughness = _material(scene, hit)
     matte = np.where(((wo[:, 2] > 0) & (wi[:, 2] > 0))[:, None], base_color / np.pi, 0.0)
@@ -182,9 +183,10 @@ def brdf(scene, hit, wi):
 
 
 def brdf_backward(scene, hit, wi, d_f):
-    """The adjoint of `brdf` for one row each: (d_base_color (N, 3), d_roughness (N,)).
+    """The adjoint of `brdf`, row by row: (d_base_color (N, 3), d_roughness (N,)).
 
-    d_f (N, 3) is the derivative of some loss by what `brdf` returned; directions are held fixed.
+    d_f (N, 3) is the derivative of some loss with respect to the result of `brdf`; directions are
+    held fixed.
     """
     wo, wi = _local(hit, wi)
     matte = scene["matte"][hit["thing"]]
@@ -195,9 +197,10 @@ def brdf_backward(scene, hit, wi, d_f):
 
 
 def sample_brdf(scene, hit, u3):
-    """Draw directions wi (N, 3) by the material: one half by the cosine, one half mirrored by GGX.
+    """Sample directions wi (N, 3): one half by the cosine, one half with `sample_ggx`.
 
-    Matte things have the first kind only. Some directions lead below the surface. u3 (N, 3).
+    Matte primitives have the first kind only. Some directions are below the surface. u3 (N, 3),
+    uniform in [0, 1).
     """
     wo = _local(hit, hit["normals"])[0]
     phi, r = 2 * np.pi * u3[:, 1], np.sqrt(u3[:, 2])
@@ -209,7 +212,7 @@ def sample_brdf(scene, hit, u3):
 
 
 def brdf_pdf(scene, hit, wi):
-    """How densely `sample_brdf` draws directions, (N,) in 1/sr; 0 below the surface."""
+    """The density of `sample_brdf` per solid angle, (N,) in 1/sr; 0 below the surface."""
     wo, wi = _local(hit, wi)
     even = np.maximum(wi[:, 2], 0) / np.pi
     mirrored = ggx_pdf(wo, wi, scene["roughness"][hit["thing"]])
@@ -220,16 +223,16 @@ def brdf_pdf(scene, hit, wi):
 
 
 def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> PerRow:
-    """How densely `sample_light` draws directions, by solid angle.
+    """The density of `sample_light` per solid angle.
 
     Args:
-        scene: with K lamps.
-        thing: (N,), what lies in the direction wi; -1 for nothing.
-        wi: (N, 3), from the point towards it.
-        distance: (N,), how far away it is, in meters.
+        scene: with K lights.
+        thing: (N,), the primitive in the direction wi; -1 for none.
+        wi: (N, 3), from the point toward it.
+        distance: (N,), its distance, in meters.
 
     Returns:
-        (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout
+        (N,), in 1/sr; exactly 0 where the primitive is no light, or its back is seen. Handout
         equations (5) and (6).
     """
     # >>> solution 07.1
@@ -247,11 +250,11 @@ def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> Pe
 
 
 def mis_weight(pdf: PerRow, other: PerRow) -> PerRow:
-    """How much a sample of one strategy counts, when another could have drawn it as well.
+    """The weight of a sample in multiple importance sampling of two strategies.
 
     Args:
-        pdf: (N,), the density of the strategy that has drawn it, 0 or more, in 1/sr.
-        other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
+        pdf: (N,), the density of the strategy that took the sample, 0 to 1e200, in 1/sr.
+        other: (N,), that of the other one, likewise.
 
     Returns:
         (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
@@ -266,19 +269,19 @@ def mis_weight(pdf: PerRow, other: PerRow) -> PerRow:
 def direct_light(
     scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, proposal: Scene | None = None
 ) -> Colors:
-    """The light that comes straight from lamps and leaves the surface to the viewer.
+    """Direct light: radiance from lights that the surface reflects to the viewer.
 
     Args:
-        scene: with at least one lamp.
-        hit: N places; something is seen in every row.
+        scene: with at least one light.
+        hit: N surface points; every row has a primitive.
         u_light: (N, 3), for `sample_light`: one direction for each row.
         u_surface: (N, 3), for `sample_brdf`: another one.
-        proposal: the scene by which directions, densities and weights are made; None for `scene`
-            itself. Both scenes have the same shapes and lamps, materials may differ. What is seen
-            along a direction, and how the surface reflects it, is always that of `scene`.
+        proposal: the scene that determines directions, densities and weights; None for `scene`
+            itself. Both scenes have the same shapes and lights, materials may differ. Closest hits
+            and the BRDF are always those of `scene`.
 
     Returns:
-        (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
+        (N, 3), an estimate of the radiance without the emission of the point itself. Handout
         equations (8) to (10).
     """
     # >>> solution 07.3
@@ -303,15 +306,15 @@ def direct_light(
 
 
 def roulette(beta: Colors, u: PerRow) -> tuple[Colors, PerRow]:
-    """End paths that carry little; let the others carry more for it.
+    """Russian roulette: end paths of small throughput at random, and compensate the others.
 
     Args:
-        beta: (N, 3), what a path's light is multiplied with on its way to the viewer, 0 or more.
+        beta: (N, 3), the throughput of each path, 0 or more.
         u: (N,), uniform in [0, 1).
 
     Returns:
-        (beta (N, 3), alive (N,) of bool): the new factors, zeros where the path has ended, and
-        which paths go on. Handout equations (11) and (12).
+        (beta (N, 3), alive (N,) of bool): the new throughput, zeros where the path has ended, and
+        which paths continue. Handout equations (11) and (12).
     """
     # >>> solution 07.4
     q = beta.max(axis=1).clip(max=1.0)
@@ -325,17 +328,17 @@ def roulette(beta: Colors, u: PerRow) -> tuple[Colors, PerRow]:
 def trace_paths(
     scene: Scene, origins: Vectors, directions: Vectors, depth: int, rng: np.random.Generator
 ) -> Colors:
-    """The radiance that comes along rays, light over several surfaces included.
+    """The radiance along rays, with direct and indirect light.
 
     Args:
-        scene: with at least one lamp.
-        origins, directions: (N, 3), of the viewer's rays; unit directions.
-        depth: 1 or more: how many straight pieces a path may have, from the lamp to the viewer.
-            1 is what things emit towards the viewer, 2 has direct light as well, and so on.
-        rng: a generator; each ray gets random numbers of its own.
+        scene: with at least one light.
+        origins, directions: (N, 3), of the camera rays; unit directions.
+        depth: 1 or more: the largest number of segments of a path, from the light to the camera.
+            1 is emission toward the camera, 2 has direct light as well, and so on.
+        rng: a generator; each ray gets independent random numbers.
 
     Returns:
-        (N, 3), one estimate for each ray; 0 where a ray sees nothing. Handout equations (13) to
+        (N, 3), one estimate for each ray; 0 where a ray hits nothing. Handout equations (13) to
         (15).
     """
     # >>> solution 07.5
@@ -361,20 +364,21 @@ def trace_paths(
 
 def direct_light_backward(
     scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, d_radiance: Colors
-) -> tuple[ThingColors, PerThing]:
-    """The adjoint of `direct_light`, by what things are made of.
+) -> tuple[PrimitiveColors, PerPrimitive]:
+    """The adjoint of `direct_light` with respect to the materials (detached sampling).
 
     Directions, densities and weights are held fixed: it is the derivative of
-    `direct_light(scene, hit, u_light, u_surface, proposal)` by `scene` alone, where `proposal` is a
-    copy of `scene` that stays as it is.
+    `direct_light(scene, hit, u_light, u_surface, proposal)` with respect to `scene` alone, where
+    `proposal` is a copy of `scene` that is held fixed.
 
     Args:
         scene, hit, u_light, u_surface: as for `direct_light`.
-        d_radiance: (N, 3), the derivative of some loss by each number that `direct_light` returned.
+        d_radiance: (N, 3), the derivative of some loss with respect to the result of
+            `direct_light`.
 
     Returns:
-        (d_base_color (T, 3), d_roughness (T,)), one row for each thing of the scene, zero for
-        things that the hit does not contain. Handout equations (16) to (18).
+        (d_base_color (T, 3), d_roughness (T,)), one row for each primitive of the scene, zero for
+        primitives that the hit does not contain. Handout equations (16) to (18).
     """
     # >>> solution 07.6
     n, things = len(hit["thing"]), len(scene["matte"])
@@ -403,7 +407,7 @@ def direct_light_backward(
 
 
 def rectangle(corner, edge_u, edge_v, **material):
-    """One rectangle for `assemble`; material: see `assemble`."""
+    """One rectangle for `assemble`; `material`: see there."""
     return {"corner": corner, "edge_u": edge_u, "edge_v": edge_v, **material}
 
 
@@ -415,8 +419,8 @@ def ball(center, radius, **material):
 def assemble(things):
     """A scene of rectangles and balls; balls come last.
 
-    Each thing may have base_color, a number or three, emission likewise, metalness, roughness, and
-    matte; what is left out is 0.5, 0, 0, 0.5, and whether neither of the last two was given.
+    Each primitive may have base_color, a number or three, emission likewise, metalness, roughness,
+    and matte. Defaults are 0.5, 0, 0, 0.5, and true if neither metalness nor roughness is given.
     """
     things = sorted(things, key=lambda thing: "ball" in thing)
     flat = [thing for thing in things if "ball" not in thing]
@@ -436,7 +440,7 @@ def assemble(things):
 
 
 def demo_room():
-    """A room with a lamp in the ceiling, a glossy floor and a ball of metal: thing 7."""
+    """A room with a light in the ceiling, a glossy floor and a metal ball: primitive 7."""
     lamp, white = {"emission": [9.0, 8.0, 6.5], "base_color": 0.0}, {"base_color": 0.7}
     return assemble(
         [
@@ -457,7 +461,7 @@ def demo_room():
 
 
 def demo_table(base_color=(0.8, 0.5, 0.2), roughness=0.35):
-    """A table under a slanted lamp; the table is thing 0. Its picture is 10 x 7 pixels small."""
+    """A table, primitive 0, under a tilted light. Its image has 10 x 7 pixels."""
     return assemble(
         [
             rectangle(
@@ -474,19 +478,20 @@ def demo_table(base_color=(0.8, 0.5, 0.2), roughness=0.35):
 
 
 def table_rays():
-    """The rays (origins, directions) of the picture of `demo_table`, (70, 3) each."""
+    """The rays (origins, directions) of the image of `demo_table`, (70, 3) each."""
     return camera_rays(10, 7, [0, 0.9, 1.2], [0, 0, -0.3], 45)
 
 
 def repeated(hit, times):
-    """A hit with each row so many times in a row."""
+    """A hit with each row repeated `times` times."""
     return some(hit, np.repeat(np.arange(len(hit["thing"])), times))
 
 
 def strata(rng, pixels, side=SIDE):
-    """Random numbers (pixels side^2, 3), those of one pixel spread evenly: less noise, same mean.
+    """Stratified random numbers (pixels side^2, 3): lower variance, same mean.
 
-    Each of the last two numbers has a cell of a grid for itself; the first ones are dealt out.
+    Within a pixel the last two numbers are jittered in a grid of cells, the first one in a shuffled
+    sequence of intervals.
     """
     cells = np.stack(np.mgrid[:side, :side], axis=-1).reshape(-1, 2)
     dealt = rng.permuted(np.tile(np.arange(side**2), (pixels, 1)), axis=1)
@@ -496,18 +501,18 @@ def strata(rng, pixels, side=SIDE):
 
 
 def recover(scene, thing, origins, directions, picture, steps, rng):
-    """Find the base color and the roughness of one thing in a picture, by your gradient.
+    """Recover the base color and the roughness of one primitive from an image, by your gradient.
 
-    Adam on the mean squared difference from the picture, relative to it (plus 0.1), so that the
-    highlight does not have all the say. The residual and the derivative that it is multiplied with
-    are made with random numbers of their own: section 6 of the handout says why.
+    Adam on the mean squared error relative to the image (plus 0.1), so that the highlight does not
+    dominate. The residual and the derivative that it multiplies have independent random numbers
+    (a dual-buffer loss): section 6 of the handout says why.
 
     Args:
-        scene: all is known of it but base_color and roughness of `thing`, where it is a start.
-        thing: its number.
-        origins, directions: (N, 3), the rays of the picture.
+        scene: known but for base_color and roughness of `thing`, which are an initial guess.
+        thing: the index of the primitive.
+        origins, directions: (N, 3), the rays of the image.
         picture: (N, 3), direct light only.
-        steps: of descent, 1 or more.
+        steps: of gradient descent, 1 or more.
         rng: a generator.
 
     Returns:
@@ -545,7 +550,7 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
 
 
 def by_roughness(scene, thing, origins, directions, rng, side=12):
-    """How the mean of the channels of each pixel (N,) changes with a thing's roughness."""
+    """Derivative of each pixel (N,), mean of RGB, with respect to a primitive's roughness."""
     hit, slope = see(scene, origins, directions), np.zeros(len(origins))
     for k in np.flatnonzero(hit["thing"] == thing):
         many = repeated(some(hit, [k]), side**2)
@@ -555,8 +560,8 @@ def by_roughness(scene, thing, origins, directions, rng, side=12):
     return slope
 
 
-# What the C++ core found for `demo_table`, in 1/10,000: red, green, blue and the derivative of
-# their mean by the roughness, for the last five rows of the picture; then what it recovered.
+# Results of the C++ core for `demo_table`, in 1/10,000: red, green, blue and the derivative of
+# their mean with respect to the roughness, for the last five rows; then the recovered values.
 _CORE = """
     0 0 0 0  1178 614 197 291  2611 1362 439 945  4997 2612 848 3357  6452 3373 1096 4714
     6421 3357 1090 4740  4990 2608 846 3357  2630 1372 442 936  1174 612 197 291  0 0 0 0
@@ -575,7 +580,7 @@ _CORE_FOUND = "7907 4999 2035 3396"
 
 
 def core_answers():
-    """Direct light (7, 10, 3), its derivative by roughness (7, 10), recovered (4,): the core's."""
+    """Of the core: direct light (7, 10, 3), its roughness gradient (7, 10), recovered (4,)."""
     table = np.array(_CORE.split(), float).reshape(5, 10, 4) / 1e4
     table = np.concatenate([np.zeros((2, 10, 4)), table])
     return table[..., :3], table[..., 3], np.array(_CORE_FOUND.split(), float) / 1e4

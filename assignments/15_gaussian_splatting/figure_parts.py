@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -191,6 +192,7 @@ def show(axes: Axes, picture: Array, title: str) -> None:
 def calm(make: Callable[[ModuleType], tuple[Figure, Facts]]) -> Callable[..., tuple[Figure, Facts]]:
     """Far from a splat exp underflows to 0, as it should."""
 
+    @functools.wraps(make)
     def drawn(module: ModuleType) -> tuple[Figure, Facts]:
         with np.errstate(under="ignore"):
             return make(module)

@@ -279,7 +279,9 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-FIGURES = figures_of(fig1_projection, fig2_weights, fig3_pull, fig4_fit, fig5_arrows, fig6_three)
+FIGURES = figures_of(
+    *map(parts.calm, (fig1_projection, fig2_weights, fig3_pull, fig4_fit, fig5_arrows, fig6_three))
+)
 RED = {
     "fig1_projection": "lens_not_held",
     "fig2_weights": "blend_inclusive",

@@ -44,16 +44,16 @@ if TYPE_CHECKING:
     from photograd.fitting.evaluate import evaluate
     from photograd.geometry.mesh import Bvh, Mesh
     from photograd.images import read_image
-    from photograd.representation import Representation
+    from photograd.representation import Representation, check_gradients
     from photograd.splats import Gaussians
     from photograd.transport import (
         Material,
+        Parameter,
         PathOptions,
         PathTracer,
         RecoveryOptions,
         Scene,
         Target,
-        Unknown,
         builtin_scene,
         read_model,
         read_scene,
@@ -71,10 +71,10 @@ _HOME = {
     "photograd.fitting": "Fit FitOptions Model fit load_model",
     "photograd.geometry.mesh": "Bvh Mesh",
     "photograd.images": "read_image",
-    "photograd.representation": "Representation",
+    "photograd.representation": "Representation check_gradients",
     "photograd.splats": "Gaussians",
     "photograd.transport": "Material PathOptions PathTracer Scene builtin_scene read_scene",
-    "photograd.transport.inverse": "RecoveryOptions Target Unknown recover",
+    "photograd.transport.inverse": "RecoveryOptions Target Parameter recover",
     "photograd.transport.mesh_files": "read_model",
 }
 """Names at the door, by the module in which each is defined."""
@@ -93,6 +93,7 @@ __all__ = [
     "Mesh",
     "Model",
     "OctreeSh",
+    "Parameter",
     "PathOptions",
     "PathTracer",
     "RecoveryOptions",
@@ -100,11 +101,11 @@ __all__ = [
     "Scene",
     "SparseSh",
     "Target",
-    "Unknown",
     "View",
     "bsdf",
     "builtin_scene",
     "capture",
+    "check_gradients",
     "errors",
     "estimate_bounds",
     "evaluate",

@@ -17,16 +17,18 @@ from numpy.typing import NDArray
 from photograd._arrays import shortened
 from photograd.errors import DtypeError, Error, RangeError, message
 
-Place = Callable[[tuple[int, ...]], str]
+NameOfIndex = Callable[[tuple[int, ...]], str]
 
 
-def require_finite(function: str, outputs: Mapping[str, NDArray[Any] | None], place: Place) -> None:
+def require_finite(
+    function: str, outputs: Mapping[str, NDArray[Any] | None], name_of: NameOfIndex
+) -> None:
     """Check what a renderer returns.
 
     Args:
         function: the renderer, for the error.
         outputs: arrays by name; None is skipped.
-        place: what an index of an array is called, such as a pixel.
+        name_of: what an index of an array is called, such as a pixel.
 
     Raises:
         Error: an array with NaN or infinity, and where the first one is.
@@ -39,9 +41,25 @@ def require_finite(function: str, outputs: Mapping[str, NDArray[Any] | None], pl
                 continue
         bad = np.argwhere(~np.isfinite(array))
         if len(bad):
-            got = f"{len(bad)} that are not, the first in {place(tuple(bad[0].tolist()))}"
+            got = f"{len(bad)} that are not, the first in {name_of(tuple(bad[0].tolist()))}"
             remedy = "a parameter holds NaN, infinity, or a number too large to add up"
             raise Error(message(function, name, "finite values", got, remedy))
+
+
+def require_instance(
+    function: str, argument: str, value: object, kind: type, remedy: str | None = None
+) -> None:
+    """Raise DtypeError unless `value` is an instance of `kind`.
+
+    Args:
+        function, argument: that was called, and what `value` was given as, for the error.
+        value: to be checked.
+        kind: a class.
+        remedy: what makes one, or takes one out of something larger.
+    """
+    if not isinstance(value, kind):
+        expected = f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}"
+        raise DtypeError(message(function, argument, expected, type(value).__name__, remedy))
 
 
 # Dataclasses of plain values, such as options and policies, checked against their annotations.

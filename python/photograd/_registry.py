@@ -1,7 +1,7 @@
 """Registered models: found by name, and their parameters packed into rows of numbers.
 
 Reflectance models, specular surfaces, phase functions, lights and representations are all kept in a
-`Registry`. Models of a few numbers describe them by `Parameters`, and every function of such a
+`Registry`. Models of a few numbers describe them by `ModelParameters`, and every function of such a
 model takes its numbers as `Values`: by name, or packed.
 """
 
@@ -62,7 +62,7 @@ class Registry(Mapping[str, Model]):
 
 
 @dataclass(frozen=True)
-class Parameter:
+class ModelParameter:
     """A continuous parameter: `size` numbers that make sense in [lo, hi], in `unit`."""
 
     name: str
@@ -72,15 +72,15 @@ class Parameter:
     unit: str
 
 
-class Parameters(tuple[Parameter, ...]):
+class ModelParameters(tuple[ModelParameter, ...]):
     """The parameters of a model, in the order in which the core packs them."""
 
     __slots__ = ()
 
     @classmethod
-    def of(cls, rows: Iterable[tuple[Any, ...]]) -> Parameters:
+    def of(cls, rows: Iterable[tuple[Any, ...]]) -> ModelParameters:
         """From rows (name, size, lo, hi, unit), as the core describes them."""
-        return cls(Parameter(*row) for row in rows)
+        return cls(ModelParameter(*row) for row in rows)
 
     @property
     def width(self) -> int:
@@ -163,7 +163,7 @@ def _below(model: str, name: str) -> str:
     return f"{model}.{name}" if model else name
 
 
-def _require_positive(function: str, name: str, parameter: Parameter, column: Array) -> None:
+def _require_positive(function: str, name: str, parameter: ModelParameter, column: Array) -> None:
     """A lobe without width has no value, and an index of refraction of 0 none, either."""
     if parameter.lo > 0 and not (column > 0).all():
         remedy = SPECULAR if "roughness" in parameter.name else None

@@ -67,7 +67,7 @@ def test_a_name_that_no_file_can_have_is_refused_before_the_work(
     monkeypatch.chdir(tmp_path)
     needed = {
         "fit": ["capture"],
-        "recover": ["cornell-box", "--target", "x.exr", "--unknown", "materials.red.albedo"],
+        "recover": ["cornell-box", "--target", "x.exr", "--parameter", "materials.red.albedo"],
         "trace": ["cornell-box"],
     }
     done = photograd(command, *needed.get(command, []), "--out", name)

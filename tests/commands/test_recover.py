@@ -13,7 +13,7 @@ from PIL import Image
 from tests.commands.conftest import Photograd
 from tests.commands.test_trace import SCENE
 
-WORDS = ("--unknown", "materials.gray.albedo=0.2", "--spp", 4, "--learning-rate", 0.3)
+WORDS = ("--parameter", "materials.gray.albedo=0.2", "--spp", 4, "--learning-rate", 0.3)
 
 
 @pytest.fixture
@@ -49,8 +49,8 @@ def test_a_color_is_found_and_resumed(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--unknown", "materials.grya.albedo"), "did you mean 'materials.gray.albedo'"),
-        (("--unknown", "materials.gray.albedo=red"), "NAME=NUMBER"),
+        (("--parameter", "materials.grya.albedo"), "did you mean 'materials.gray.albedo'"),
+        (("--parameter", "materials.gray.albedo=red"), "NAME=NUMBER"),
         (
             (*WORDS, "--camera-from", "none.toml", "--camera-from", "none.toml"),
             "one for each of 1 targets",
@@ -77,7 +77,7 @@ def test_what_has_an_incomplete_derivative_is_refused_before_any_tracing(
 ) -> None:
     target, out = tmp_path / "black.exr", tmp_path / "found"
     write_exr(target, np.zeros((8, 8, 3), np.float32))
-    unknown = ("--unknown", "materials.glass.eta=1.35", "--steps", 10**6)
+    unknown = ("--parameter", "materials.glass.eta=1.35", "--steps", 10**6)
     done = photograd("recover", "cornell-spheres", "--target", target, *unknown, "--out", out)
     assert done.code == 1
     said = " ".join(done.err.split())

@@ -84,7 +84,7 @@ def test_every_command_that_fills_a_folder_asks(
             "cornell-box",
             "--target",
             picture,
-            "--unknown",
+            "--parameter",
             "materials.red.albedo",
             "--out",
             folder,

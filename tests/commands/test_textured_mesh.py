@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 from photograd.capture.write import write_blender_capture
@@ -40,17 +42,17 @@ def test_a_texture_is_fitted_to_the_mesh_of_a_file(photograd: Photograd, tmp_pat
     assert photograd(*words).code == 0
     assert read_image(picture)[..., :3].std() > 0.05
 
-    again = photograd(  # the file that the fit left is a mesh to start from
-        "compare",
-        photos,
-        "--candidates",
-        "textured_mesh:16",
-        "--start-from",
-        model / "mesh.glb",
-        "--out",
-        tmp_path / "compared",
-        *few,
-    )
+    words = ("compare", photos, "--candidates", "textured_mesh:16", "--out", tmp_path / "compared")
+    # The file that the fit left is a mesh to start from.
+    again = photograd(*words, "--start-from", model / "mesh.glb", *few)
     assert again.code == 0, again.err
     assert "KHR_materials_unlit" in again.err
     assert again.result()["scores"][0]["candidate"] == "textured_mesh:16"
+
+    assert photograd(*words, "--start-from", model / "mesh.glb", *few).code == 0
+    assert photograd(*words, "--start-from", mesh, *few).code == 0  # the same mesh
+    larger = write_obj(tmp_path / "larger.obj", replace(cube(), vertices=1.5 * cube().vertices))
+    other = photograd(*words, "--start-from", larger, *few)
+    assert other.code == 1
+    both = r"start_from: expected .*mesh.glb \(.*started, got .*larger.obj \(.*choose another --out"
+    assert re.search(both, other.err), other.err

@@ -19,7 +19,9 @@ from photograd.fields import DenseGrid
 from photograd.fitting import Fit, options_for
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.group_gradients import group_gradients
+from photograd.fitting.view_gradients import ViewGradients
 from photograd.fitting.voxel_gradients import DensityGradient
+from photograd.textures.recovery import RecoveredTexture
 from photograd.transport.accumulation import Accumulation
 from PIL import Image
 
@@ -155,6 +157,36 @@ def test_gradients_are_drawn_with_their_sign() -> None:
     model = replace(scene.as_model(scene.truth()), options=job.options)
     gradient = group_gradients(model, job.model, scene.capture(), seed=1, max_rays=200)
     assert pixels(gradient._repr_png_()).shape == (24, 52, 3)
+
+
+def test_gradients_of_gaussians_are_drawn_where_they_are_seen() -> None:
+    found = ViewGradients(
+        picture=np.full((6, 8, 3), 0.5),
+        pixels=np.array([[1.5, 0.5], [6.5, 4.5], [np.nan, 0.0], [80.0, 2.0], [3.5, 3.5]]),
+        spread=np.zeros((5, 2, 2)),
+        screen=np.zeros((5, 2)),
+        visible=np.array([True, True, False, True, False]),
+        d_logit=np.array([-1.0, 1.0, 5.0, 5.0, 5.0]),
+        grad2d=np.zeros(5),
+        loss=0.1,
+    )
+    drawn = pixels(found._repr_png_())
+    assert drawn.shape == (6, 20, 3)
+    signed = drawn[:, 12:]
+    assert signed[0, 1, 2] > signed[0, 1, 0]  # blue: more opacity lowers the loss
+    assert signed[4, 6, 0] > signed[4, 6, 2]
+    assert (signed < 1).any(axis=2).sum() == 2
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 5])
+def test_a_recovered_texture_marks_unseen_texels(channels: int) -> None:
+    texture = np.full((3, 4, channels), 0.25)
+    unseen = np.zeros((3, 4), np.bool_)
+    unseen[1, 2] = True
+    drawn = pixels(RecoveredTexture(texture, np.ones(2), unseen, 1.0)._repr_png_())
+    assert drawn.shape == (3, 12, 3)
+    np.testing.assert_allclose(drawn[:, :4], 0.25, atol=3e-3)
+    assert ((drawn[:, 8:] < 1).any(axis=2) == unseen).all()
 
 
 def test_matplotlib_is_not_imported() -> None:

@@ -91,7 +91,7 @@ def test_the_truth_itself_has_no_loss_over_any_background() -> None:
 
 
 def test_a_rendering_without_opacity_is_refused() -> None:
-    with pytest.raises(ShapeError, match="image_loss: outputs: expected a rendering with opacity"):
+    with pytest.raises(ShapeError, match=r"image_loss: outputs.opacity: expected an array \(R,\)"):
         image_loss(Outputs(np.ones((4, 3))), np.ones((4, 4)), np.ones(3), display=True)
 
 

@@ -111,7 +111,27 @@ def test_a_planted_name_is_seen(tmp_path: Path) -> None:
         ("- one\n  two", "- one\n  two"),
         ("Args:\n    x: a * b\n        c", "Args:\n    x: a \\* b\n        c"),
         ("Attributes:\n    x: y", "Fields:\n    x: y"),
+        (">>> f(*x)\n(a|b)\n\na|b", ">>> f(*x)\n(a|b)\n\na\\|b"),
+        (
+            "See cpp/photograd/ops/composite.h, docs/bench.md.",
+            "See :doc:`ops/composite.h </api/sources/ops.composite>`, :doc:`/bench`.",
+        ),
     ],
 )
 def test_docstrings_become_restructured_text(text: str, rst: str) -> None:
     assert "\n".join(docstrings.to_rst(text.split("\n"))) == rst
+
+
+def test_a_property_has_no_type_before_its_colon() -> None:
+    assert docstrings.to_rst(["All views: three."], is_property=True) == ["", "All views: three."]
+
+
+def test_files_of_the_core_that_docstrings_name_are_there() -> None:
+    sources = api_pages.named_sources()
+    assert len(sources) > 25
+    assert [source for source in sources if not (ROOT / "cpp/photograd" / source).is_file()] == []
+
+
+def test_docstrings_name_no_other_sources() -> None:
+    """A reader of the pages has no repository: files of the core are shown, pages linked."""
+    assert api_pages.unknown_files() == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from support import python_words
 from support.tree import ROOT, cpp_texts, relative, walk
 from support.words import (
     EXCEPTIONS,
@@ -16,7 +17,14 @@ from support.words import (
     python_prose,
 )
 
+PYTHON = ROOT / "python"
 SPOKEN = ("python", "docs", "bench", "tools")  # folders whose comments and docstrings are read
+
+
+def python_texts() -> dict[str, str]:
+    """Sources by path below python/."""
+    paths = walk(PYTHON, {".py"})
+    return {path.relative_to(PYTHON).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
 def test_cpp_names_speak_the_language_of_the_field() -> None:
@@ -38,6 +46,18 @@ def test_cpp_prose_speaks_the_language_of_the_field() -> None:
         for line in banned_phrases(f"cpp/{path}", cpp_prose(text))
     ]
     assert found == []
+
+
+def test_python_names_speak_the_language_of_the_field() -> None:
+    texts = python_texts()
+    assert len(texts) > 300, "the sources are not found any more"
+    assert [line for path, text in texts.items() for line in python_words.banned(path, text)] == []
+
+
+def test_exceptions_of_python_are_still_needed() -> None:
+    texts = python_texts()
+    for path, name in python_words.EXCEPTIONS:
+        assert name in {found for _, found in python_words.names_of(path, texts[path])}, path
 
 
 def test_python_prose_speaks_the_language_of_the_field() -> None:
@@ -114,7 +134,28 @@ def test_a_planted_phrase_of_python_is_seen(text: str) -> None:
     assert len(banned_phrases("x.py", python_prose(text))) == 1
 
 
-def test_names_in_python_are_free() -> None:
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("photograd/x.py", "class Unknown: ..."),
+        ("photograd/transport/shapes.py", "places = ()"),
+        ("photograd/fields/x.py", "self.seen_by = 1"),
+        ("photograd/splats/x.py", "def f(*, least): ..."),
+        ("photograd_course/src/photograd_course/build/dossier.py", ""),
+        ("photograd_course/src/photograd_course/build/rules/x.py", "def look(build): ..."),
+    ],
+)
+def test_a_planted_old_name_of_python_is_seen(path: str, text: str) -> None:
+    assert len(python_words.banned(path, text)) == 1
+
+
+def test_other_names_of_python_are_free() -> None:
+    text = "# places, an Unknown\nclass RecoveryOptions: ...\nf(unknown, placement, look_at)\n"
+    assert python_words.banned("photograd/transport/x.py", text) == []
+    assert python_words.banned("photograd_course/src/photograd_course/x.py", "seen = look()") == []
+
+
+def test_prose_bans_leave_names_in_python_alone() -> None:
     text = 'lamp = {"lamp": 1}  # a light\nprint("colour")\n'
     assert banned_phrases("x.py", python_prose(text)) == []
 

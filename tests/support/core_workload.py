@@ -41,12 +41,12 @@ from photograd.textures import (
 )
 from photograd.transport import (
     Accumulation,
+    IrradianceSensor,
     NormalMap,
     ParticleOptions,
     PathOptions,
     PathTracer,
     PhotonMap,
-    Receiver,
     Scene,
     Texture,
     TextureUse,
@@ -291,7 +291,7 @@ def paths() -> None:
     photons = PhotonMap(tracer, particles=50, radius=0.2, seed=1)
     photons.render(spp=1, seed=1), photons.irradiance(*rays(5, np.float64)), len(photons)
     emit_particles(tracer, 5, seed=1)
-    sensor = Receiver(np.array([-1.0, 0.5, 1]), np.array([2.0, 0, 0]), np.array([0, 0, -2.0]), 3, 4)
+    sensor = IrradianceSensor([-1.0, 0.5, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0], 3, 4)
     trace_light(tracer, sensor, particles=40, seed=1, options=ParticleOptions(max_depth=3))
     bake_ambient_occlusion(textured(), "floor", 4, spp=1, seed=1)
 

@@ -20,7 +20,7 @@ from photograd.transport.incomplete import TURNING
 from photograd.transport.material import ALPHA, MODELS
 
 from tests.transport import difference_scenes as scenes
-from tests.transport import test_glow as glow
+from tests.transport import test_emission_textures as emission
 from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, lit_by
 from tests.transport.media_scenes import cloud as densities
@@ -207,7 +207,7 @@ def painted() -> Iterator[Case]:
         ("paint", textures.stage(4), "paint", ((2, 1, 0), (1, 2, 1))),
         ("rough paint", textures.stage(4), "rough", ((1, 1, 1), (1, 1, 2))),
         ("veil", scenes.veil(), "t", ((1, 0, 0), (1, 1, 0))),
-        ("sign", glow.room(size=4), "sign", ((1, 1, 0), (1, 2, 2))),
+        ("sign", emission.room(size=4), "sign", ((1, 1, 0), (1, 2, 2))),
     ):
         rows = []
         for at in places:

@@ -56,8 +56,11 @@ def same(a: Any, b: Any, place: str = "") -> None:
 def replace_glow(shape: Any, model: ModelFile) -> Any:
     """The shape as a dictionary, with the texture in the place of its name."""
     found = {field.name: getattr(shape, field.name) for field in fields(shape)}
-    if shape.glow is not None:
-        found["glow"] = (model.textures[shape.glow.texture], shape.glow.channel)
+    if shape.emission_texture is not None:
+        found["emission_texture"] = (
+            model.textures[shape.emission_texture.texture],
+            shape.emission_texture.channel,
+        )
     return found
 
 
@@ -126,7 +129,7 @@ def with_whole_images(material: Material, uses: dict[str, TextureUse]) -> Materi
 
 @st.composite
 def models(draw: st.DrawFn, model: str) -> ModelFile:
-    """A cube, bent and in several places, of a material with all textures that it may have."""
+    """A cube, bent and in several instances, of a material with all textures that it may have."""
     material = draw(materials(model))
     height, width = draw(st.integers(1, 3)), draw(st.integers(1, 3))
     wrap = draw(st.sampled_from([("repeat", "repeat"), ("clamp", "mirror")]))
@@ -155,12 +158,12 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
     g = np.random.default_rng(draw(st.integers(0, 1000)))
     count = len(shape.vertices)
     emission = np.zeros(3)
-    glow = None
+    emission_texture = None
     if not material.has_opacity and draw(st.booleans()):
         emission = np.array([numbers(draw, 0, 40), numbers(draw, 0, 1), 0.0])
-        textures["glow"] = Texture(decode(bytes_of(draw, height, width, 3)), wrap)
-        glow = TextureUse("glow") if draw(st.booleans()) else None
-    places = tuple(
+        textures["emission_texture"] = Texture(decode(bytes_of(draw, height, width, 3)), wrap)
+        emission_texture = TextureUse("emission_texture") if draw(st.booleans()) else None
+    instances = tuple(
         transform(np.diag(g.uniform(0.5, 2, 3)) @ turn(g), g.normal(size=(3, 1)))
         for _ in range(draw(st.sampled_from([0, 2, 3])))
     )
@@ -171,15 +174,17 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
     shape = replace(
         shape,
         emission=emission,
-        glow=glow,
-        places=places,
+        emission_texture=emission_texture,
+        instances=instances,
         interior=interior,
         vertices=shape.vertices + g.normal(size=3).astype(np.float32),
         normals=g.normal(size=(count, 3)).astype(np.float32),
         uv=g.normal(size=(count, 2)).astype(np.float32),
     )
     media = {"m": Medium(g.uniform(0, 9, 3))} if interior else {}
-    asked = {use.texture for use in uses.values()} | ({"glow"} if glow else set())
+    asked = {use.texture for use in uses.values()} | (
+        {"emission_texture"} if emission_texture else set()
+    )
     return ModelFile((shape,), {"m": material}, {n: textures[n] for n in asked}, media)
 
 

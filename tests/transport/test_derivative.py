@@ -26,7 +26,7 @@ from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import any_material, bent_floor, stage
 from tests.transport.test_alpha import checker, gray, shade
-from tests.transport.test_glow import room
+from tests.transport.test_emission_textures import room
 
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
 SPP = 3

@@ -202,9 +202,9 @@ def test_light_of_surfaces(tmp_path: Path) -> None:
     assert told == []
     shape = model.shapes[0]
     assert isinstance(shape, MeshShape)
-    assert shape.glow is not None
+    assert shape.emission_texture is not None
     np.testing.assert_array_equal(shape.emission, [1, 1, 1])
-    painted = model.textures[shape.glow.texture].values
+    painted = model.textures[shape.emission_texture.texture].values
     np.testing.assert_allclose(painted, decode(PIXELS / 255), rtol=1e-6)
 
 

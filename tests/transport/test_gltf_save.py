@@ -169,11 +169,11 @@ def test_rounding_is_named(tmp_path: Path) -> None:
     eighths = {"t": Texture(np.full((2, 2, 3), 1.0), filter="mip")}
     _, said = written(replace(model, textures=eighths), tmp_path / "m.glb")
     assert said == []
-    one_place = replace(cube, places=(np.diag([2.0, 2.0, 2.0, 1.0]),))
+    one_place = replace(cube, instances=(np.diag([2.0, 2.0, 2.0, 1.0]),))
     _, said = written(ModelFile((one_place,), {"m": at_half("gltf")}), tmp_path / "m.glb")
     assert [text.split(": ", 1)[1] for text in said] == [
         "shape 'cube': vertices changed",
-        "shape 'cube': places changed",
+        "shape 'cube': instances changed",
     ]
 
 

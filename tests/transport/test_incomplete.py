@@ -15,13 +15,13 @@ from photograd.errors import RangeError
 from photograd.transport import (
     Environment,
     Material,
+    Parameter,
     PathOptions,
     PathTracer,
     Scene,
     SphereShape,
     Texture,
     TextureUse,
-    Unknown,
     derivative_image,
     recover,
 )
@@ -170,8 +170,8 @@ def test_each_entry_refuses_with_a_reason_and_a_remedy(
             derivative_image(tracer, along, spp=1, seed=0)
     with pytest.raises(RangeError, match=f"^loss_and_gradients: names: {says}"):
         loss_and_gradients(tracer, target, target, names=[name], **pair)
-    for unknown in (name, Unknown(name, start=0.6)):
-        with pytest.raises(RangeError, match=f"^recover: unknowns: {says}"):
+    for unknown in (name, Parameter(name, start=0.6)):
+        with pytest.raises(RangeError, match=f"^recover: parameters: {says}"):
             recover(tracer.scene, target, [unknown])
 
 

@@ -11,11 +11,11 @@ from photograd.errors import RangeError, ShapeError
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import (
     Accumulation,
+    IrradianceSensor,
     Material,
     ParticleOptions,
     PathOptions,
     PathTracer,
-    Receiver,
     Scene,
     SphereShape,
     trace_light,
@@ -27,7 +27,7 @@ from support.bits import same_bits
 from support.glass_ball import flux_below_ball
 from support.light_proofs import polygon_irradiance
 from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, any_material, bent_floor, stage, view
-from tests.transport.test_glow import room
+from tests.transport.test_emission_textures import room
 from tests.transport.test_strategies import assert_same_mean
 
 GLASS = Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.95]})
@@ -43,9 +43,9 @@ def below(height: float, size: int, half: float = HALF) -> Camera:
     return Camera(size, size, focal, focal, size / 2, size / 2, pose)
 
 
-def patch(size: int, half: float = HALF) -> Receiver:
+def patch(size: int, half: float = HALF) -> IrradianceSensor:
     """The middle of the floor, cell by cell."""
-    return Receiver([-half, 0, half], [2 * half, 0, 0], [0, 0, -2 * half], size, size)
+    return IrradianceSensor([-half, 0, half], [2 * half, 0, 0], [0, 0, -2 * half], size, size)
 
 
 def seen_irradiance(tracer: PathTracer, camera: Camera, albedo: Any, spp: int) -> Accumulation:
@@ -124,8 +124,8 @@ def test_both_ends_agree_under_bent_normals() -> None:
     upwards = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0.2], [0, -1, 0, 0], [0, 0, 0, 1]])
     camera = Camera(2, 2, 2.0, 2.0, 1.0, 1.0, upwards)
     seen = seen_irradiance(tracer, camera, 0.5, 1 << 14)
-    receiver = Receiver([-0.5, 1.2, -0.5], [1, 0, 0], [0, 0, 1], 2, 2)
-    landed = trace_light(tracer, receiver, 1 << 18, seed=4, options=AS_SEEN)
+    sensor = IrradianceSensor([-0.5, 1.2, -0.5], [1, 0, 0], [0, 0, 1], 2, 2)
+    landed = trace_light(tracer, sensor, 1 << 18, seed=4, options=AS_SEEN)
     assert_same_mean(seen, landed, 5, 0.1)
 
 
@@ -136,7 +136,7 @@ def test_energy_in_a_closed_box() -> None:
     walls = []
     for k in range(3):
         n, x, y = np.roll(2 * np.eye(3), -k, axis=0)
-        walls += [Receiver([-1.0] * 3, x, y, 1, 1), Receiver(n - 1.0, y, x, 1, 1)]
+        walls += [IrradianceSensor([-1.0] * 3, x, y, 1, 1), IrradianceSensor(n - 1.0, y, x, 1, 1)]
     for options, tolerance in ((ParticleOptions(10, None), 3e-4), (ParticleOptions(99, 1), 0.02)):
         landed = sum(
             wall.cell_area * trace_light(tracer, wall, 8192, seed=1, options=options).mean
@@ -149,8 +149,8 @@ def test_energy_in_a_closed_box() -> None:
 
 def test_a_lamp_in_closed_form() -> None:
     tracer = PathTracer(covered(BLACK, BLACK), dtype=np.float64)
-    receiver = Receiver([-0.5, 1.2, 0.5], [1, 0, 0], [0, 0, -1], 3, 3)  # above the cover
-    found = trace_light(tracer, receiver, 1 << 18, seed=2, options=ParticleOptions(1))
+    sensor = IrradianceSensor([-0.5, 1.2, 0.5], [1, 0, 0], [0, 0, -1], 3, 3)  # above the cover
+    found = trace_light(tracer, sensor, 1 << 18, seed=2, options=ParticleOptions(1))
     corner, u, v = (np.array(edge, float) for edge in LAMP)
     outline = np.stack([corner, corner + v, corner + u + v, corner + u])
     for row in range(3):
@@ -185,9 +185,9 @@ def ball_under_the_sky(floor: Material = BLACK) -> Scene:
 def test_the_caustic_of_a_ball_has_the_power_of_theory() -> None:
     tracer = PathTracer(ball_under_the_sky(), dtype=np.float64)
     for half in (0.15, 0.5):
-        receiver = patch(8, half)
-        found = trace_light(tracer, receiver, 1 << 18, seed=1, options=ALL)
-        power = found.mean.sum(axis=(0, 1)) * receiver.cell_area
+        sensor = patch(8, half)
+        found = trace_light(tracer, sensor, 1 << 18, seed=1, options=ALL)
+        power = found.mean.sum(axis=(0, 1)) * sensor.cell_area
         theory = flux_below_ball(0.4, 0.6, half)
         np.testing.assert_allclose(power, theory * np.array([1.0, 2.0, 3.0]), rtol=0.01)
     # Without the ball the small square would get 0.09 W: the ball gathers several times that.
@@ -223,14 +223,14 @@ def test_mistakes_are_named() -> None:
         trace_light(tracer, patch(2), 1, seed=0, sums=Accumulation.empty(3, 2))
     with pytest.raises(RangeError, match="a scene with lights"):
         trace_light(PathTracer(stage(GRAY, lamp=0.0)), patch(2), 1, seed=0)
-    with pytest.raises(ShapeError, match="Receiver: corner"):
-        Receiver([0, 0], [1, 0, 0], [0, 1, 0], 1, 1)
+    with pytest.raises(ShapeError, match="IrradianceSensor: corner"):
+        IrradianceSensor([0, 0], [1, 0, 0], [0, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="perpendicular"):
-        Receiver([0, 0, 0], [1, 0, 0], [1, 1, 0], 1, 1)
+        IrradianceSensor([0, 0, 0], [1, 0, 0], [1, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="perpendicular"):
-        Receiver([0, 0, 0], [0, 0, 0], [0, 1, 0], 1, 1)
+        IrradianceSensor([0, 0, 0], [0, 0, 0], [0, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="at least 1 cell"):
-        Receiver([0, 0, 0], [1, 0, 0], [0, 1, 0], 0, 1)
+        IrradianceSensor([0, 0, 0], [1, 0, 0], [0, 1, 0], 0, 1)
     with pytest.raises(RangeError, match="max_depth"):
         ParticleOptions(max_depth=0)
     with pytest.raises(RangeError, match="roulette_from"):

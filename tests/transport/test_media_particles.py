@@ -13,13 +13,13 @@ from photograd.transport import (
     Accumulation,
     DensityGrid,
     Environment,
+    IrradianceSensor,
     Material,
     Medium,
     ParticleOptions,
     PathOptions,
     PathTracer,
     PhotonMap,
-    Receiver,
     Scene,
     emit_particles,
     trace_light,
@@ -97,7 +97,7 @@ def test_both_ends_agree_through_a_body(material: Material) -> None:
     assert_same_mean(seen, landed, 2, 0.15)
 
 
-def test_a_receiver_within_a_medium_in_closed_form() -> None:
+def test_a_sensor_within_a_medium_in_closed_form() -> None:
     # It hangs in the middle of a box of ink, under the sun: E exp(-sigma d), to rounding; half of a
     # meter above it, and half below, where another counts what passes both.
     ink = with_interior(box("ink", [0, 0, 0], [2, 2, 2], BOUNDARY), "ink")
@@ -105,8 +105,8 @@ def test_a_receiver_within_a_medium_in_closed_form() -> None:
     scene = Scene("ink", (ink,), {}, view(2), None, (sun,), media={"ink": INK})
     tracer = PathTracer(scene, dtype=np.float64)
     for height in (0.5, -0.5, -1.0):
-        receiver = Receiver([-0.5, height, 0.5], [1, 0, 0], [0, 0, -1], 1, 1)
-        found = trace_light(tracer, receiver, 1 << 16, seed=1)
+        sensor = IrradianceSensor([-0.5, height, 0.5], [1, 0, 0], [0, 0, -1], 1, 1)
+        found = trace_light(tracer, sensor, 1 << 16, seed=1)
         expected = np.array([2.0, 3.0, 4.0]) * np.exp(-SIGMA * (1 - height))
         share = found.mean[0, 0] / expected
         np.testing.assert_allclose(share, share[0], rtol=1e-9)  # all channels by the same flights
@@ -114,15 +114,15 @@ def test_a_receiver_within_a_medium_in_closed_form() -> None:
         assert found.standard_error[0, 0, 0] < 0.02 * expected[0]
 
 
-def test_a_receiver_within_scattering_media_in_closed_form() -> None:
+def test_a_sensor_within_scattering_media_in_closed_form() -> None:
     # Of light that has not been scattered (one segment): E exp(-sigma d), in fog, and in a grid.
     sun = DirectionalLight([0, 1, 0], [2.0, 3.0, 4.0])
     even = smoke(np.full((3, 4, 5), 0.7), majorant=1.3)
     for medium, sigma in ((FOG, FOG.sigma_t), (even, 0.7 * even.sigma_t)):
         scene = replace(under(medium, sun, sky=None), shapes=(under(medium).shapes[1],))
         tracer = PathTracer(scene, dtype=np.float64)
-        receiver = Receiver([-0.5, 0.55, 0.5], [1, 0, 0], [0, 0, -1], 1, 1)
-        found = trace_light(tracer, receiver, 1 << 17, seed=1, options=ParticleOptions(1))
+        sensor = IrradianceSensor([-0.5, 0.55, 0.5], [1, 0, 0], [0, 0, -1], 1, 1)
+        found = trace_light(tracer, sensor, 1 << 17, seed=1, options=ParticleOptions(1))
         expected = np.array([2.0, 3.0, 4.0]) * np.exp(-sigma * 0.8)
         error = found.standard_error[0, 0]
         assert (error < 0.02 * expected).all()
@@ -141,7 +141,10 @@ def landed_on_walls(medium: Medium, particles: int) -> Any:
     corner, landed = np.array([-2.0, -1.0, -2.0]), np.zeros(3)
     for k in range(3):
         n, x, y = np.roll(4 * np.eye(3), -k, axis=0)
-        for wall in (Receiver(corner, x, y, 1, 1), Receiver(corner + n, y, x, 1, 1)):
+        for wall in (
+            IrradianceSensor(corner, x, y, 1, 1),
+            IrradianceSensor(corner + n, y, x, 1, 1),
+        ):
             found = trace_light(
                 tracer, wall, particles, seed=1, options=ParticleOptions(1000, None)
             )

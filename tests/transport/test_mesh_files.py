@@ -118,7 +118,7 @@ def test_places_in_the_tree_of_nodes(tmp_path: Path) -> None:
     )
     model, _ = read(tmp_path, glb.bytes())
     assert len(model.shapes) == 1  # a mesh, twice in the scene
-    parts = [CORNERS @ m[:3, :3].T + m[:3, 3] for m in model.shapes[0].places]
+    parts = [CORNERS @ m[:3, :3].T + m[:3, 3] for m in model.shapes[0].instances]
     np.testing.assert_allclose(parts[0], CORNERS + np.array([0, 0, 5]))
     # x turns to -z about y; scaled before, moved after, and by the parent.
     expected = np.stack([0 * CORNERS[:, 0] + 1, CORNERS[:, 1], 5 - 2 * CORNERS[:, 0]], axis=1)

@@ -148,7 +148,7 @@ def test_a_mesh_with_normals_has_the_curvature_of_its_ball() -> None:
     # Placed by a matrix, wound the wrong way, and with normals of any length.
     place = np.eye(4)
     place[2, 3] = -1.0
-    cap = MeshShape("mirror", r, faces[:, ::-1], "mirror", normals=3 * r, places=(place,))
+    cap = MeshShape("mirror", r, faces[:, ::-1], "mirror", normals=3 * r, instances=(place,))
     found = swing(replace(scene, shapes=(scene.shapes[0], cap)), PathOptions("light", max_depth=3))
     assert found == pytest.approx(1 - np.log2(1.5), abs=0.06)
     flat = replace(cap, normals=None)

@@ -14,13 +14,13 @@ from photograd.geometry.sdf import sphere
 from photograd.transport import (
     Accumulation,
     Environment,
+    IrradianceSensor,
     Material,
     MeshShape,
     NormalMap,
     PathOptions,
     PathTracer,
     PhotonMap,
-    Receiver,
     Scene,
     SdfShape,
     Shutter,
@@ -64,8 +64,8 @@ def moving(size: int = 8, *, alpha: bool = False) -> Scene:
         "gloss",
         normals=normals,
         uv=uv,
-        places=(START,),
-        closing_places=(END,),
+        instances=(START,),
+        closing_instances=(END,),
     )
     scene = stage(any_material("ggx_metal"), size=size, sky=0.3)
     ball = SphereShape(
@@ -82,9 +82,9 @@ def at(scene: Scene, s: float) -> Scene:
     """The scene at a moment, standing still."""
     shapes = []
     for shape in scene.shapes:
-        if isinstance(shape, MeshShape) and shape.closing_places:
-            here = (1 - s) * shape.places[0] + s * shape.closing_places[0]
-            shapes.append(replace(shape, places=(here,), closing_places=()))
+        if isinstance(shape, MeshShape) and shape.closing_instances:
+            here = (1 - s) * shape.instances[0] + s * shape.closing_instances[0]
+            shapes.append(replace(shape, instances=(here,), closing_instances=()))
         elif isinstance(shape, SphereShape) and shape.closing is not None:
             here = (1 - s) * shape.center + s * shape.closing
             shapes.append(replace(shape, center=here, closing=None))
@@ -133,8 +133,8 @@ def test_a_camera_that_flies_along_sees_no_blur() -> None:
 def test_what_moves_nowhere_takes_the_same_picture() -> None:
     scene = at(moving(), 0.3)
     told = [
-        replace(s, closing_places=s.places)
-        if isinstance(s, MeshShape) and s.places
+        replace(s, closing_instances=s.instances)
+        if isinstance(s, MeshShape) and s.instances
         else replace(s, closing=s.center)
         if isinstance(s, SphereShape)
         else s
@@ -174,12 +174,14 @@ def test_what_cannot_move_is_refused() -> None:
     def mesh(**more: Any) -> MeshShape:
         return MeshShape("d", vertices, faces, "gray", **more)
 
-    with pytest.raises(RangeError, match=r"d\.closing_places: expected a positive determinant at"):
-        mesh(closing_places=(about,))
+    with pytest.raises(
+        RangeError, match=r"d\.closing_instances: expected a positive determinant at"
+    ):
+        mesh(closing_instances=(about,))
     with pytest.raises(RangeError, match="a positive determinant"):
-        mesh(closing_places=(np.diag([1.0, 1, -1, 1]),))
-    with pytest.raises(ShapeError, match="2, one for each place"):
-        mesh(places=(START, END), closing_places=(END,))
+        mesh(closing_instances=(np.diag([1.0, 1, -1, 1]),))
+    with pytest.raises(ShapeError, match="2, one for each instance"):
+        mesh(instances=(START, END), closing_instances=(END,))
     with pytest.raises(ShapeError, match=r"b\.closing: expected shape \(3,\)"):
         SphereShape("b", np.zeros(3), 1.0, "gray", closing=np.zeros(2))
     scene = moving()
@@ -195,7 +197,7 @@ def test_what_cannot_move_is_refused() -> None:
 def test_who_wants_shapes_that_stand_still_says_so(tmp_path: Path) -> None:
     scene = moving()
     tracer = PathTracer(scene)
-    wall = Receiver([0, 0, 0], [1, 0, 0], [0, 0, 1], 2, 2)
+    wall = IrradianceSensor([0, 0, 0], [1, 0, 0], [0, 0, 1], 2, 2)
     calls: dict[str, Callable[[], Any]] = {
         "add_occlusion": lambda: tracer.add_occlusion(Accumulation.empty(8, 8), 1, seed=1),
         "bake_ambient_occlusion": lambda: bake_ambient_occlusion(scene, "dome", 4, seed=1),
@@ -250,7 +252,7 @@ def test_scene_files_say_how_shapes_move(tmp_path: Path) -> None:
     np.testing.assert_array_equal(ball.closing, [1, 2, 3])
     c, s = np.cos(np.radians(30)), np.sin(np.radians(30))
     expected = [[c, 0, s, 0], [0, 1, 0, 1], [-s, 0, c, 0], [0, 0, 0, 1]]
-    np.testing.assert_allclose(box.closing_places[0], expected, atol=1e-15)
+    np.testing.assert_allclose(box.closing_instances[0], expected, atol=1e-15)
     for old, new, line, words in (
         ("translate = [1, 2, 3]", "translate = [1, 2]", 17, "shapes.0.closing.translate"),
         ("translate = [1, 2, 3]", "shift = [1, 2, 3]", 17, "shapes.0.closing.shift"),

@@ -113,7 +113,9 @@ def maps() -> dict[str, Any]:
 def looked_up(maps: dict[str, Any], keep: Any = None) -> Array:
     """The maps as the renderer shows them: shapes that shine by them, seen directly."""
     shapes = [
-        replace(s, emission=np.ones(3), glow=TextureUse(s.name)) if s.name in maps else s
+        replace(s, emission=np.ones(3), emission_texture=TextureUse(s.name))
+        if s.name in maps
+        else s
         for s in room()
     ]
     wide = {name: replace(t, values=np.repeat(t.values, 3, axis=2)) for name, t in maps.items()}
@@ -220,7 +222,7 @@ def test_a_mesh_that_is_placed_is_baked_where_it_stands() -> None:
     turn = np.array([[0, 0, 0.5, 0.25], [0, 0.5, 0, 0], [-0.5, 0, 0, 0.5], [0, 0, 0, 1.0]])
     back = np.linalg.inv(turn)
     moved = floor.vertices @ back[:3, :3].T.astype(np.float32) + back[:3, 3].astype(np.float32)
-    placed = replace(floor, vertices=moved, places=(turn,))
+    placed = replace(floor, vertices=moved, instances=(turn,))
     one = bake_ambient_occlusion(scene, "floor", 8, spp=64, seed=11).values
     other = bake_ambient_occlusion(
         replace(scene, shapes=(placed, scene.shapes[1])), "floor", 8, spp=64, seed=11
@@ -247,7 +249,7 @@ def test_what_cannot_be_baked_is_refused() -> None:
     with pytest.raises(SceneError, match=r"0\.\.1, got 0 to 2"):
         bake(uv=2 * floor.uv)
     with pytest.raises(SceneError, match=r"2 instances"):
-        bake(places=(np.eye(4), np.eye(4)))
+        bake(instances=(np.eye(4), np.eye(4)))
     with pytest.raises(SceneError, match=r"cover a texel's center, got none of 8 x 8"):
         bake(uv=0.001 * floor.uv)
     with pytest.raises(RangeError, match="radius"):

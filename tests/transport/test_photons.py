@@ -62,9 +62,9 @@ def test_a_caustic_keeps_its_power() -> None:
     x, z = np.meshgrid(lines, lines)
     points = np.stack([x, 0 * x, z], axis=-1).reshape(-1, 3)
     normals = np.broadcast_to([0.0, 1.0, 0.0], points.shape)
-    receiver = patch(1, half)
-    landed = trace_light(tracer, receiver, 1 << 17, seed=2, options=ALL).mean[0, 0]
-    power = landed * receiver.cell_area
+    sensor = patch(1, half)
+    landed = trace_light(tracer, sensor, 1 << 17, seed=2, options=ALL).mean[0, 0]
+    power = landed * sensor.cell_area
     photons = PhotonMap(tracer, 1 << 17, radius=r, seed=2, options=ALL)
     found = photons.irradiance(points, normals).sum(axis=0) * (2 * half / n) ** 2
     np.testing.assert_allclose(found, power, rtol=0.01)

@@ -12,17 +12,21 @@ from photograd.errors import IoError, RangeError, ShapeError
 from photograd.lights import EnvironmentMap
 from photograd.transport import (
     Accumulation,
+    InverseRendering,
+    Parameter,
     PathOptions,
     PathTracer,
-    Recovery,
     RecoveryOptions,
     Target,
-    Unknown,
     recover,
     scene_with,
 )
 from photograd.transport.builtin import cornell_box, evening, evening_map
-from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
+from photograd.transport.inverse import (
+    dual_buffer_loss,
+    dual_buffer_loss_backward,
+    loss_and_gradients,
+)
 from photograd.transport.inverse.parameters import Activation
 from photograd_course.gradcheck import check_gradient
 
@@ -53,7 +57,7 @@ def test_activations_have_derivatives_and_inverses(activation: Activation) -> No
 
 
 def crossed(params: dict[str, Any], target: Any, weight: Any) -> Any:
-    return np.array(cross_loss(params["a"], params["b"], target, weight))
+    return np.array(dual_buffer_loss(params["a"], params["b"], target, weight))
 
 
 def test_the_loss_has_the_derivative_it_says() -> None:
@@ -62,7 +66,7 @@ def test_the_loss_has_the_derivative_it_says() -> None:
     start = {"a": g.random((4, 3, 3)), "b": g.random((4, 3, 3))}
 
     def backward(p: dict[str, Any], d: Any) -> dict[str, Any]:
-        found = cross_loss_backward(p["a"], p["b"], target, weight, float(d))
+        found = dual_buffer_loss_backward(p["a"], p["b"], target, weight, float(d))
         return dict(zip(("a", "b"), found, strict=True))
 
     report = check_gradient(lambda p: crossed(p, target, weight), backward, start, seed=4)
@@ -90,7 +94,7 @@ def proof(size: int = 5, spp: int = 4, only: str = "") -> tuple[Any, Any, dict[s
         halves = [Accumulation.empty(size, size) for _ in range(2)]
         for seed, sums in enumerate(halves):
             tracer.add_samples(sums, spp, seed=seed, options=PATH, sampling_params=held)
-        return np.array(cross_loss(halves[0].mean, halves[1].mean, target, weight))
+        return np.array(dual_buffer_loss(halves[0].mean, halves[1].mean, target, weight))
 
     def backward(params: dict[str, Any], d_loss: Any) -> dict[str, Any]:
         put(params)
@@ -147,7 +151,7 @@ def test_the_gradient_is_right_on_average_and_with_equal_seeds_it_is_not() -> No
 
 
 OPTIONS = RecoveryOptions(steps=60, spp=4, learning_rate=0.4, path=PathOptions(max_depth=5))
-WALLS = [Unknown(f"materials.{name}.albedo", start=0.5) for name in ("red", "green")]
+WALLS = [Parameter(f"materials.{name}.albedo", start=0.5) for name in ("red", "green")]
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +183,7 @@ def test_a_resumed_search_has_the_same_bits(room: tuple[Any, Any], tmp_path: Pat
         assert whole.curves[name].shape == (61, 3)
         np.testing.assert_allclose(whole.curves[name][0], 0.5)
         np.testing.assert_array_equal(whole.scene.materials[material].values["albedo"], value)
-    parts = Recovery(scene, picture, WALLS, OPTIONS)
+    parts = InverseRendering(scene, picture, WALLS, OPTIONS)
     parts.run(tmp_path, should_stop=lambda: parts.step_number >= 15)
     resumed = recover(scene, picture, WALLS, options=OPTIONS, folder=tmp_path, resume=True)
     np.testing.assert_array_equal(resumed.history, whole.history)
@@ -189,9 +193,9 @@ def test_a_resumed_search_has_the_same_bits(room: tuple[Any, Any], tmp_path: Pat
     with pytest.raises(RangeError, match=r"a folder without recovery\.npz"):
         recover(scene, picture, WALLS, options=OPTIONS, folder=tmp_path)
     with pytest.raises(RangeError, match="targets: expected"):
-        Recovery(scene, picture + 1, WALLS, OPTIONS).load(tmp_path)
+        InverseRendering(scene, picture + 1, WALLS, OPTIONS).load(tmp_path)
     with pytest.raises(RangeError, match="another seed"):
-        Recovery(scene, picture, WALLS, replace(OPTIONS, seed=1)).load(tmp_path)
+        InverseRendering(scene, picture, WALLS, replace(OPTIONS, seed=1)).load(tmp_path)
 
 
 def test_lights_are_found_while_they_are_sampled_anew(tmp_path: Path) -> None:
@@ -204,13 +208,13 @@ def test_lights_are_found_while_they_are_sampled_anew(tmp_path: Path) -> None:
         for k, view in enumerate(views)
     ]
     options = RecoveryOptions(steps=36, spp=4, resample_every=10, views=1, path=PATH, seed=5)
-    unknowns = [Unknown("lights.0.texels", start=1.0)]
-    whole = recover(scene, targets, unknowns, options=options)
+    parameters = [Parameter("lights.0.texels", start=1.0)]
+    whole = recover(scene, targets, parameters, options=options)
     first, last = (np.mean(part) for part in (whole.history[:6, 1], whole.history[-12:, 1]))
     assert last < 0.15 * first  # 0.10; 0.09 and 0.10 with other seeds
-    parts = Recovery(scene, targets, unknowns, options)
+    parts = InverseRendering(scene, targets, parameters, options)
     parts.run(tmp_path, should_stop=lambda: parts.step_number >= 13)
-    resumed = recover(scene, targets, unknowns, options=options, folder=tmp_path, resume=True)
+    resumed = recover(scene, targets, parameters, options=options, folder=tmp_path, resume=True)
     np.testing.assert_array_equal(
         resumed.params["lights.0.texels"], whole.params["lights.0.texels"]
     )
@@ -231,14 +235,14 @@ def test_mistakes_are_named(room: tuple[Any, Any], tmp_path: Path) -> None:
     scene, picture = room
     with pytest.raises(RangeError, match=r"did you mean 'materials\.red\.albedo'"):
         recover(scene, picture, ["materials.red.albdeo"])
-    with pytest.raises(RangeError, match="unknowns: expected names of parameters, got none"):
+    with pytest.raises(RangeError, match="parameters: expected names of parameters, got none"):
         recover(scene, picture, [])
     with pytest.raises(RangeError, match="got one twice"):
         recover(scene, picture, ["emission.lamp", "emission.lamp"])
     with pytest.raises(RangeError, match=r"start: expected finite numbers in \[0, 1\], got 2.0"):
-        recover(scene, picture, [Unknown("materials.red.albedo", start=2.0)])
+        recover(scene, picture, [Parameter("materials.red.albedo", start=2.0)])
     with pytest.raises(ShapeError, match=r"start: expected a number or shape \(3,\)"):
-        recover(scene, picture, [Unknown("materials.red.albedo", start=[0.5, 0.5])])
+        recover(scene, picture, [Parameter("materials.red.albedo", start=[0.5, 0.5])])
     with pytest.raises(ShapeError, match="image: expected 16 x 16 pixels as the camera has"):
         recover(scene, picture[:8], ["emission.lamp"])
     with pytest.raises(ShapeError, match="at least one picture"):
@@ -246,11 +250,11 @@ def test_mistakes_are_named(room: tuple[Any, Any], tmp_path: Path) -> None:
     with pytest.raises(RangeError, match=r"image: expected finite numbers, got nan at \[1, 2, 0\]"):
         recover(scene, np.where(np.arange(768).reshape(16, 16, 3) == 54, np.nan, picture), ["x"])
     with pytest.raises(RangeError, match="lo < hi"):
-        Unknown("emission.lamp", bounds=(1.0, 0.0))
+        Parameter("emission.lamp", bounds=(1.0, 0.0))
     with pytest.raises(RangeError, match="activation: expected"):
-        Unknown("emission.lamp", activation="hope")
+        Parameter("emission.lamp", activation="hope")
     with pytest.raises(RangeError, match="an upper bound"):
-        recover(scene, picture, [Unknown("emission.lamp", activation="logit")])
+        recover(scene, picture, [Parameter("emission.lamp", activation="logit")])
     with pytest.raises(RangeError, match="weight: expected finite numbers of at least 0"):
         Target(picture, weight=-np.ones((16, 16)))
     with pytest.raises(RangeError, match="steps: expected at least 1"):

@@ -11,7 +11,7 @@ import pytest
 from photograd.errors import Error, IoError
 from photograd.transport import PathTracer
 from photograd.transport.builtin import cornell_box
-from photograd.transport.inverse import Recovery, RecoveryOptions
+from photograd.transport.inverse import InverseRendering, RecoveryOptions
 
 NAMES = ["materials.red.albedo", "emission.lamp"]
 OPTIONS = RecoveryOptions(steps=6, spp=1)
@@ -19,8 +19,8 @@ SCENE = cornell_box(6)
 PICTURE = PathTracer(SCENE).render(spp=4, seed=1).mean
 
 
-def recovery() -> Recovery:
-    return Recovery(SCENE, PICTURE, NAMES, OPTIONS)
+def recovery() -> InverseRendering:
+    return InverseRendering(SCENE, PICTURE, NAMES, OPTIONS)
 
 
 @pytest.fixture(scope="module")

@@ -51,7 +51,7 @@ kind = "mesh"
 file = "square.glb"
 material = "floor"
 emission = 0.5
-places = [{ translate = [0, 0, -1] }, { translate = [0, 0, -2], scale = [1, 2, 1] }]
+instances = [{ translate = [0, 0, -1] }, { translate = [0, 0, -2], scale = [1, 2, 1] }]
 
 [[shapes]]
 kind = "rectangle"
@@ -91,7 +91,7 @@ def test_meshes_and_textures_from_a_scene_file(folder: Path) -> None:
     np.testing.assert_allclose(first.vertices[1], [1, 2, 0], atol=1e-6)
     assert second.material == "floor"
     np.testing.assert_array_equal(second.emission, [0.5] * 3)
-    assert len(second.places) == 2
+    assert len(second.instances) == 2
     np.testing.assert_allclose(second.box, [[0, 0, -2], [1, 2, -1]])
     own = scene.materials["own/m"]
     assert own.values["base_color"].tolist() == [1, 0, 0]

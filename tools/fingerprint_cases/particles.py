@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 from photograd.transport import (
     Accumulation,
+    IrradianceSensor,
     ParticleOptions,
     PathOptions,
     PhotonMap,
-    Receiver,
     bake_ambient_occlusion,
     emit_particles,
     trace_light,
@@ -20,7 +20,7 @@ from photograd.transport import (
 from fingerprint_cases.case import Arrays, Case
 from fingerprint_cases.paths import sums_of, tracer_of
 
-SENSOR = Receiver([-1.0, 0.05, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0], 5, 6)
+SENSOR = IrradianceSensor([-1.0, 0.05, 1.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0], 5, 6)
 PARTICLES = 3000
 OPTIONS = {
     "default": ParticleOptions(),

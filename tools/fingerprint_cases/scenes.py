@@ -115,7 +115,11 @@ def without_unused(scene: Scene) -> Scene:
     names = {shape.material for shape in scene.shapes}
     materials = {name: m for name, m in scene.materials.items() if name in names}
     uses = [use for m in materials.values() for use in m.textures.values()]
-    uses += [s.glow for s in scene.shapes if isinstance(s, MeshShape) and s.glow is not None]
+    uses += [
+        s.emission_texture
+        for s in scene.shapes
+        if isinstance(s, MeshShape) and s.emission_texture is not None
+    ]
     textures = {use.texture: scene.textures[use.texture] for use in uses}
     return replace(scene, materials=materials, textures=textures)
 

@@ -84,7 +84,8 @@ def emitting_shapes() -> Scene:
     values = np.random.default_rng(3).uniform(0.1, 1.0, (4, 6, 4))
     corner, u, v = PANEL
     screen = replace(
-        rectangle("screen", corner, u, v, "black", [4.0, 3.5, 3.0]), glow=TextureUse("image", 1)
+        rectangle("screen", corner, u, v, "black", [4.0, 3.5, 3.0]),
+        emission_texture=TextureUse("image", 1),
     )
     rows = np.eye(4), np.eye(4)
     rows[0][:3, 3], rows[1][:3, 3] = [-0.9, 0.1, 0.3], [0.9, 0.2, 0.0]
@@ -95,7 +96,7 @@ def emitting_shapes() -> Scene:
         SIDES,
         "gray",
         np.array([0.8, 0.6, 0.4]),
-        places=rows,
+        instances=rows,
     )
     globe = ball("black", (0.0, 0.3, 0.6), 0.2, emission=np.array([1.0, 1.5, 2.0]))
     shapes = (rectangle("floor", *FLOOR, "gloss"), screen, small, globe, dome("gray", scale=0.3))

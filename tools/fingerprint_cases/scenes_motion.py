@@ -31,7 +31,7 @@ CLOSING = place(-0.3, 0.2, 0.8, [1.1, 0.9, 1]), place(0.6, 0.1, 0.9, [0.8, 1.2, 
 def instances(*, moving: bool = False, transparent: bool = False, **more: Any) -> Scene:
     """Two textured domes of one mesh and a ball; they may move."""
     tilt = NormalMap(np.broadcast_to([0.2, 0.1, 1.0], (2, 2, 3)).copy())
-    domes = dome("gloss", places=PLACES, closing_places=CLOSING if moving else ())
+    domes = dome("gloss", instances=PLACES, closing_instances=CLOSING if moving else ())
     end = np.array([0.5, 0.7, -0.2]) if moving else None
     flying = ball("card" if transparent else "glass", (0.2, 0.3, 0.6), 0.25, closing=end)
     return stage(

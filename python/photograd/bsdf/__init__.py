@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from photograd._registry import Parameter
+from photograd._registry import ModelParameter
 from photograd.bsdf.models import METALS, BsdfModel, registry
 
-__all__ = ["METALS", "BsdfModel", "Parameter", "registry"]
+__all__ = ["METALS", "BsdfModel", "ModelParameter", "registry"]

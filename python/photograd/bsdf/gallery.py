@@ -130,9 +130,9 @@ def _draw_derivatives(figure: Figure, model: BsdfModel, parameters: dict[str, An
     for number, (name, slope) in enumerate(slopes.items()):
         down, column = divmod(number, across)
         rows = -(-len(slopes) // across)
-        place = 0.3 + column * 0.68 / across, 0.03 + (rows - 1 - down) * 0.125
+        corner = 0.3 + column * 0.68 / across, 0.03 + (rows - 1 - down) * 0.125
         many = len(slopes) > MANY
-        axes = figure.add_axes((*place, size, (0.15 if many else 0.18) / rows))
+        axes = figure.add_axes((*corner, size, (0.15 if many else 0.18) / rows))
         picture = np.zeros(inside.shape)
         picture[inside] = slope * np.pi * np.clip(wi[:, 2], 0.0, None)
         limit = float(np.quantile(np.abs(picture[inside]), 0.97)) or 1.0

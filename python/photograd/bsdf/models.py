@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd._registry import Parameters, Registry, Values
+from photograd._registry import ModelParameters, Registry, Values
 from photograd.types import Array
 
 METALS = {
@@ -58,7 +58,7 @@ class BsdfModel:
     """
 
     name: str
-    parameters: Parameters
+    parameters: ModelParameters
     energy: tuple[str, float]
     reciprocal: bool
     transmits: bool
@@ -144,7 +144,7 @@ def registry(core: ModuleType | Any = _core) -> Registry[BsdfModel]:
     models = {
         name: BsdfModel(
             name,
-            Parameters.of(model.parameters()),
+            ModelParameters.of(model.parameters()),
             model.energy(),
             model.reciprocal(),
             model.transmits(),

@@ -14,7 +14,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd._registry import Parameters, Registry, Values
+from photograd._registry import ModelParameters, Registry, Values
 from photograd.types import Array
 
 
@@ -29,7 +29,7 @@ class PhaseModel:
     """
 
     name: str
-    parameters: Parameters
+    parameters: ModelParameters
     core: Any
 
     def p(self, values: Values, cos_theta: Array) -> Array:
@@ -69,7 +69,7 @@ class PhaseModel:
 def registry() -> Registry[PhaseModel]:
     """All phase functions of the core, by name."""
     models = {
-        name: PhaseModel(name, Parameters.of(core.parameters()), core)
+        name: PhaseModel(name, ModelParameters.of(core.parameters()), core)
         for name, core in _core.phases.items()
     }
     return Registry("phase function", models)

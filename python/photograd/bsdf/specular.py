@@ -16,7 +16,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd._registry import Parameters, Registry, Values
+from photograd._registry import ModelParameters, Registry, Values
 from photograd.types import Array
 
 
@@ -32,7 +32,7 @@ class DeltaModel:
     """
 
     name: str
-    parameters: Parameters
+    parameters: ModelParameters
     lobe_count: int
     core: Any
 
@@ -76,7 +76,7 @@ class DeltaModel:
 def registry(core: ModuleType | Any = _core) -> Registry[DeltaModel]:
     """All specular surfaces of a compiled module, by name."""
     models = {
-        name: DeltaModel(name, Parameters.of(model.parameters()), model.lobe_count(), model)
+        name: DeltaModel(name, ModelParameters.of(model.parameters()), model.lobe_count(), model)
         for name, model in core.delta_bsdfs.items()
     }
     return Registry("specular surface", models)

@@ -176,8 +176,19 @@ def estimate_bounds(capture: Capture) -> Bounds:
     4. A declared range of depths: all that the training cameras see in it. 5. A cube at the point
     where the optical axes meet, reaching half way to the cameras.
 
+    Args:
+        capture: as `load_capture` returns it.
+
+    Returns:
+        The box, the rule that gave it, and the names of views that see no part of it.
+
     Raises:
         SceneError: no camera sees the box (names them), or the axes do not meet.
+
+    Example:
+        >>> bounds = photograd.estimate_bounds(photograd.load_capture("photos"))
+        >>> bounds.box.shape, bounds.rule
+        ((2, 3), 'declared in the file')
     """
     box, rule = _find(capture)
     blind = blind_cameras(capture.views, box)

@@ -47,6 +47,12 @@ def load_capture(
     Raises:
         IoError: nothing that we know there, or files missing, damaged or outside of the folder.
         RangeError, ShapeError, SceneError: files that contradict themselves.
+
+    Example:
+        >>> capture = photograd.load_capture("photos")
+        >>> view = capture.train[0]
+        >>> view.rgba().shape  # display values, straight alpha
+        (16, 16, 4)
     """
     path = Path(path)
     found = find_formats(path)

@@ -123,7 +123,8 @@ def compare(
             capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
                 name, capture = f"{name}_validation", capture.with_validation_split()
-            found = fit_all(name, capture, parsed, shared, out / name, stopping, first)
+            start = first, str(start_from)
+            found = fit_all(name, capture, parsed, shared, out / name, stopping, start)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
             draw([evaluation for _, evaluation in found], parsed, name, pictures[-1])
@@ -155,9 +156,11 @@ def fit_all(
     shared: FitOptions,
     out: Path,
     stopping: StopRequest,
-    first: Model | None,
+    start_from: tuple[Model | None, str],
 ) -> list[tuple[Score, Evaluation]]:
     """Fit and score all candidates on one capture, under progress bars.
+
+    `start_from` is the model of that option, and its file.
 
     Raises RangeError for a capture without held-out views, typer.Exit if it was stopped.
     """
@@ -166,6 +169,7 @@ def fit_all(
             message("compare", "CAPTURE", "held-out views", f"none in {capture.source}")
         )
     found = []
+    first, first_name = start_from
     folder = {candidate: out / candidate.label.replace(":", "_") for candidate in candidates}
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
@@ -179,6 +183,7 @@ def fit_all(
                 candidate.options(shared),
                 lambda job, folder: run_with_bar(job, folder, stopping),
                 source=folder[source] if isinstance(source, Candidate) else source,
+                source_name=first_name,
             )
         if result is None:
             note("stopped; the same command goes on from here")

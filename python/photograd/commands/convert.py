@@ -71,18 +71,18 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
     _check_other(source, target)
     before = read_gaussians(source)
     gaussians, told, suffix = before.gaussians, before.presentation, target.suffix.lower()
-    lost = []
+    left_out = []
     if suffix != ".ply" and told.up not in (None, USUAL_UP):
         gaussians = with_usual_up(gaussians, told.up)
-        lost.append(f"rotated from {told.up} up to {USUAL_UP} up, which {suffix} files have")
+        left_out.append(f"rotated from {told.up} up to {USUAL_UP} up, which {suffix} files have")
     write_gaussians(target, gaussians, spz_version=spz_version, presentation=told)
     after = read_gaussians(target)
     if after.gaussians.degree < gaussians.degree:
         degrees = f"{after.gaussians.degree + 1} to {gaussians.degree}"
-        lost.append(f"harmonics of degree {degrees} are dropped")
-    lost += dropped(suffix, told)
+        left_out.append(f"harmonics of degree {degrees} are dropped")
+    left_out += dropped(suffix, told)
     notes = [{"reading": source.name, "note": line} for line in before.conversions]
-    notes += [{"reading": target.name, "note": line} for line in (*after.conversions, *lost)]
+    notes += [{"reading": target.name, "note": line} for line in (*after.conversions, *left_out)]
     codings = codings_of(target, gaussians, spz_version=spz_version)
     changes = [
         {

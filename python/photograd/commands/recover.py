@@ -26,7 +26,13 @@ from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import read_radiance
 from photograd.images.write import write_exr
-from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
+from photograd.transport.inverse import (
+    InverseRendering,
+    Parameter,
+    RecoveryOptions,
+    RecoveryResult,
+    Target,
+)
 from photograd.transport.inverse.job import FILE_NAME
 from photograd.transport.inverse.options import LOSSES, Loss
 from photograd.transport.path_options import PathOptions
@@ -45,10 +51,10 @@ CameraOption = Annotated[
     list[Path] | None,
     typer.Option("--camera-from", help="A scene file whose camera took a target; one for each."),
 ]
-UnknownOption = Annotated[
+ParameterOption = Annotated[
     list[str],
     typer.Option(
-        "--unknown",
+        "--parameter",
         help="A parameter to find: materials.NAME.PARAMETER, textures.NAME, emission.SHAPE, "
         "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated. Refused where the "
         "derivative is incomplete: eta of smooth glass, a mask's alpha.",
@@ -86,7 +92,7 @@ def recover(
     context: typer.Context,
     scene: SceneArgument,
     target: TargetOption,
-    unknown: UnknownOption,
+    parameter: ParameterOption,
     out: OutOption,
     camera: CameraOption = None,
     steps: StepsOption = DEFAULTS.steps,
@@ -108,7 +114,7 @@ def recover(
     seconds and on Ctrl-C, from which --resume goes on to the same bits; at the end OUT/found.json,
     pictures of textures and maps, curves.png and comparison.png.
 
-    Example: photograd recover cornell-box --target cornell.exr --unknown materials.red.albedo=0.5
+    Example: photograd recover cornell-box --target cornell.exr --parameter materials.red.albedo=0.5
     --out found
     """
     use_threads(threads)
@@ -129,7 +135,7 @@ def recover(
         seed=seed,
         path=PathOptions(max_depth=max_depth),
     )
-    job = Recovery(described, targets, [parsed(text) for text in unknown], options)
+    job = InverseRendering(described, targets, [parsed(text) for text in parameter], options)
     if resume:
         job.load(out)
         note(f"resumed at step {job.step_number} of {steps}")
@@ -154,7 +160,7 @@ def read_target(path: Path) -> Any:
     return read_radiance(path).astype(np.float64)
 
 
-def parsed(text: str) -> Unknown:
+def parsed(text: str) -> Parameter:
     """NAME, NAME=NUMBER or NAME=NUMBER,NUMBER,NUMBER.
 
     Raises:
@@ -162,22 +168,22 @@ def parsed(text: str) -> Unknown:
     """
     name, given, value = text.partition("=")
     if not given:
-        return Unknown(name)
+        return Parameter(name)
     try:
         numbers = [float(part) for part in value.split(",")]
     except ValueError as failure:
         expected = "NAME, NAME=NUMBER or NAME=NUMBER,NUMBER,NUMBER"
-        raise RangeError(message("recover", "--unknown", expected, text)) from failure
-    return Unknown(name, start=numbers if len(numbers) > 1 else numbers[0])
+        raise RangeError(message("recover", "--parameter", expected, text)) from failure
+    return Parameter(name, start=numbers if len(numbers) > 1 else numbers[0])
 
 
-def run_with_bar(job: Recovery, out: Path, stopping: StopRequest) -> RecoveryResult:
+def run_with_bar(job: InverseRendering, out: Path, stopping: StopRequest) -> RecoveryResult:
     """Run under a live progress bar on stderr."""
     with progress_bar("recover", job) as on_step:
         return job.run(out, on_step=on_step, should_stop=stopping)
 
 
-def write_result(job: Recovery, result: RecoveryResult, out: Path) -> dict[str, Any]:
+def write_result(job: InverseRendering, result: RecoveryResult, out: Path) -> dict[str, Any]:
     """Values, pictures and curves in `out`; what the last line says."""
     from photograd_course.viz import save_figure
 

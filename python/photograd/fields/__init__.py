@@ -40,7 +40,12 @@ __all__ = [
 
 
 def representations() -> dict[str, type[Representation]]:
-    """All registered representations by name."""
+    """All registered representations by name.
+
+    Example:
+        >>> photograd.representations()["dense_grid"]
+        <class 'photograd.fields.dense_grid.DenseGrid'>
+    """
     return dict(REGISTERED)
 
 

@@ -132,7 +132,7 @@ class Segments:
         halfway: Array = (self.t0 + self.t1) / 2
         return halfway
 
-    def waves(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    def batches(self) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
         """(rays, pieces): the first piece of each ray that has one, then the second, ..."""
         rays = np.flatnonzero(self.count > 0)
         k = 0
@@ -180,11 +180,11 @@ def border_gradients(
     ):
         m = np.arange(len(axis))
         pull = -d_t / direction[m, axis]
-        place = segments.ray * 3 + axis
+        slot = segments.ray * 3 + axis
         size = d_origins.size
-        d_origins += np.bincount(place, pull, size).reshape(d_origins.shape)
+        d_origins += np.bincount(slot, pull, size).reshape(d_origins.shape)
         moved = pull * times[m, axis]
-        d_directions += np.bincount(place, moved, size).reshape(d_origins.shape)
+        d_directions += np.bincount(slot, moved, size).reshape(d_origins.shape)
     return d_origins, d_directions
 
 
@@ -197,7 +197,7 @@ class Walk:
 
     weight: Array  # w_k
     behind: Array  # transmittance behind the segment
-    seen: NDArray[np.bool_]  # in front of where the ray was stopped
+    visible: NDArray[np.bool_]  # in front of where the ray was stopped
     transmittance: Array  # (R,) behind the last segment
 
 
@@ -207,15 +207,15 @@ def composite(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
     A ray of which less than `stop` is left meets nothing any more.
     """
     tau, transmittance = np.zeros(rays, s.dtype), np.ones(rays, s.dtype)
-    weight, behind, seen = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
-    for ray, m in segments.waves():
+    weight, behind, visible = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
+    for ray, m in segments.batches():
         front = transmittance[ray]
-        seen[m] = front > stop
-        thick = s[m] * seen[m]
+        visible[m] = front > stop
+        thick = s[m] * visible[m]
         weight[m] = front * -expm1(-thick)
         tau[ray] += thick
         behind[m] = transmittance[ray] = exp(-tau[ray])
-    return Walk(weight, behind, seen, transmittance)
+    return Walk(weight, behind, visible, transmittance)
 
 
 def optical_depth_backward(
@@ -231,9 +231,9 @@ def optical_depth_backward(
         end += np.asarray(d_outputs.opacity, kind) * walk.transmittance
     passed = walk.weight * v
     d_s = np.zeros_like(v)
-    for ray, m in segments.waves():
+    for ray, m in segments.batches():
         left[ray] -= passed[m]
-        d_s[m] = (walk.behind[m] * v[m] - left[ray] + end[ray]) * walk.seen[m]
+        d_s[m] = (walk.behind[m] * v[m] - left[ray] + end[ray]) * walk.visible[m]
     return d_s
 
 

@@ -61,7 +61,7 @@ def voxel_centers(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]
 def sun_visibility(
     solids: Bvh, box: ArrayLike, shape: tuple[int, ...], sun: ArrayLike, *, samples: int = 2
 ) -> NDArray[np.float64]:
-    """(X, Y, Z) share of samples^3 points of each voxel from which the sun is seen.
+    """(X, Y, Z) share of samples^3 points of each voxel from which the sun is visible.
 
     Args:
         solids: what throws shadows.
@@ -78,9 +78,9 @@ def sun_visibility(
     fine = tuple(int(n) * samples for n in shape)
     origins = voxel_centers(box, fine).reshape(-1, 3)
     towards = np.ascontiguousarray(np.broadcast_to(np.asarray(sun, np.float64), origins.shape))
-    seen = ~solids.occluded(origins, towards)
+    visible = ~solids.occluded(origins, towards)
     x, y, z = shape
-    cells = seen.reshape(x, samples, y, samples, z, samples)
+    cells = visible.reshape(x, samples, y, samples, z, samples)
     return np.asarray(cells.mean(axis=(1, 3, 5)))
 
 

@@ -30,7 +30,7 @@ def require_startable(name: str) -> None:
     if name in known:
         return
     if name in representations():
-        remedy = representation(name).teaching_example
+        remedy = representation(name).teaching_example or "derive its class from Fittable"
     else:
         near = nearest(name, known)
         remedy = f"did you mean {near!r}?" if near else ""

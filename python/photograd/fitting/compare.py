@@ -8,6 +8,7 @@ grid draws rays at random, a step of Gaussians a whole view; the seconds of both
 
 from __future__ import annotations
 
+import hashlib
 import json
 import time
 from collections.abc import Callable, Sequence
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
-from photograd._checkpoint import FILE_NAME
+from photograd._checkpoint import FILE_NAME, make_folder
 from photograd._compiled import _core
 from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
@@ -33,6 +34,7 @@ FRAMES = 5
 """Frames that are timed; the median counts."""
 
 _SECONDS = "seconds.json"
+_START = "start_from.json"
 
 Run = Callable[[Fit, Path], FitResult]
 """Runs a fit in a folder, usually under a progress bar."""
@@ -143,13 +145,29 @@ def compare_one(
     run: Run,
     *,
     source: Path | Model | None = None,
+    source_name: str = "",
 ) -> tuple[Score, Evaluation] | None:
     """Fit `candidate` to `capture` in `folder`, or continue there, and score it.
 
-    `name` is what the table calls the capture; `options` holds what all candidates share; `source`
-    is the model that the fit starts from, or its folder, and then its seconds count, too. Returns
-    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
+    Args:
+        name: what the table calls the capture.
+        capture: the photographs.
+        candidate: a representation and its size.
+        folder: of the fit; what it holds is continued.
+        options: of the fit, those that all candidates share included.
+        run: runs the fit in its folder.
+        source: the model that the fit starts from, or its folder; then its seconds count, too.
+        source_name: what errors call a model, such as its file.
+
+    Returns:
+        The line of the table and what it comes from, or None if `run` ended before the fit did: the
+        same call continues it, and its seconds add up.
+
+    Raises:
+        RangeError: a folder of other options, or of a fit that started from another model.
     """
+    first = load_model(source) if isinstance(source, Path) else source
+    start = _description(first, source.name if isinstance(source, Path) else source_name)
     if (folder / FILE_NAME).exists():
         job = Fit.resume(capture, folder)
         wanted = asdict(options)
@@ -163,9 +181,11 @@ def compare_one(
                     "choose another folder, or give the options that it was made with",
                 )
             )
+        _require_start(folder, start)
     else:
-        first = load_model(source) if isinstance(source, Path) else source
         job = Fit.start(capture, options, start_from=first)
+        make_folder(folder)
+        atomic_write(folder / _START, json.dumps({"start_from": start}).encode())
     spent = _spent(folder)
     if job.step_number < options.steps:
         result = run(job, folder)
@@ -236,3 +256,24 @@ def markdown(scores: Sequence[Score]) -> str:
 def _spent(folder: Path) -> float:
     path = folder / _SECONDS
     return float(json.loads(path.read_text())["seconds"]) if path.exists() else 0.0
+
+
+def _description(model: Model | None, name: str) -> str:
+    """The model that a fit starts from: its name, and a digest of its arrays."""
+    if model is None:
+        return "no model"
+    digest = hashlib.blake2b(digest_size=4)
+    for key, array in sorted(model.field.stored().items()):
+        digest.update(f"{key} {array.dtype} {array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return f"{name} ({digest.hexdigest()})"
+
+
+def _require_start(folder: Path, start: str) -> None:
+    """Raise RangeError if the fit in a folder started from another model."""
+    path = folder / _START
+    before = json.loads(path.read_text())["start_from"] if path.exists() else "no model"
+    if before.rpartition("(")[2] != start.rpartition("(")[2]:
+        expected = f"{before}, from which the fit in {folder} started"
+        remedy = "give the same model, or choose another --out"
+        raise RangeError(message("compare", "start_from", expected, start, remedy))

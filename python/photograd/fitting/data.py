@@ -243,8 +243,8 @@ class TrainingViews:
     def draw(self, count: int = 1, *, seed: int, step: int) -> int:
         """The view of a step, however many rays it may have: each comes once before any again."""
         del count
-        turn, place = divmod(step, len(self.views))
-        return int(permutation(seed, len(self.views), step=turn, dimension=8)[place])
+        turn, index = divmod(step, len(self.views))
+        return int(permutation(seed, len(self.views), step=turn, dimension=8)[index])
 
     def size_of(self, rays: int) -> int:
         """Pixels of a step, which draws a view whatever number of `rays` others have: the mean."""

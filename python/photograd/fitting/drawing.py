@@ -12,8 +12,8 @@ from photograd_course.metrics import round_to_8_bits
 from photograd._notebook import as_html, png
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
-from photograd.errors import Error
-from photograd.representation import Fittable, ImageBatch, RayBatch, RenderOptions
+from photograd.errors import Error, ShapeError, message
+from photograd.representation import Fittable, ImageBatch, Outputs, RayBatch, RenderOptions
 from photograd.types import Array
 
 RAYS_AT_ONCE = 1 << 16
@@ -26,22 +26,40 @@ def render_field(field: Fittable, camera: Camera, stop: float) -> tuple[Array, A
 
     Colors are linear or display values, as the field's `color_space` says; `stop` is that of
     `RenderOptions`.
+
+    Raises:
+        ShapeError: a rendering without opacity or depth.
     """
     options = RenderOptions(stop=stop)
     size = (camera.height, camera.width)
     drawn: Any = field
     if "rays" not in drawn.capabilities:
         whole, _ = drawn.render(ImageBatch(camera), seed=0, step=0, options=options)
-        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
+        color, opacity, depth = _require_all(field, whole)
+        return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
     parts = []
     for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
         ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
         origins, directions = camera.rays(ids)
         batch = RayBatch(origins, directions, ids.astype(np.uint32))
         outputs, _ = drawn.render(batch, seed=0, step=0, options=options)
-        parts.append((outputs.color, outputs.opacity, outputs.depth))
+        parts.append(_require_all(field, outputs))
     color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
     return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+
+
+def _require_all(field: Fittable, outputs: Outputs) -> tuple[Array, Array, Array]:
+    """Color, opacity and depth of a rendering; what `Outputs` may leave out is needed to draw."""
+    color, opacity, depth = outputs.color, outputs.opacity, outputs.depth
+    for name, array in (("opacity", opacity), ("depth", depth)):
+        if array is None or 3 * array.size != color.size:
+            got = "None" if array is None else f"shape {array.shape}"
+            expected = f"{color.size // 3} values, to be drawn over a background"
+            remedy = "return Outputs(color, opacity, depth), ones and zeros if there are none"
+            raise ShapeError(message(f"{field.name}.render", name, expected, got, remedy))
+    assert opacity is not None
+    assert depth is not None
+    return color, opacity, depth
 
 
 def display_field(

@@ -19,10 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.metrics import psnr, ssim, whole_windows
 
+from photograd._checks import require_instance
 from photograd._notebook import EDGE, as_html, png_of_sheet, sheet
 from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fitting.drawing import display_field, over_white, render_field
 from photograd.fitting.model import Model
 from photograd.types import Array
@@ -122,9 +123,30 @@ def evaluate(
 ) -> Evaluation:
     """Score the model on `views`, normally the test split.
 
-    Raises RangeError if there are none, or none with an 11 x 11 window of valid pixels; IoError for
-    a photograph or a mask that cannot be read.
+    Args:
+        model: as `fit` and `load_model` return it.
+        views: photographs that it has not seen, such as `capture.test`.
+        on_view: called after each view with the number of views that are scored.
+
+    Returns:
+        PSNR and SSIM, means and those of each view, and the protocol that they hold under.
+
+    Raises:
+        DtypeError: no `Model`, or no sequence of `View`s.
+        RangeError: no views, or none with an 11 x 11 window of valid pixels.
+        IoError: a photograph or a mask that cannot be read.
+
+    Example:
+        >>> capture = photograd.load_capture("photos")
+        >>> model = photograd.fit(capture, resolution=16, steps=20, rays=256)
+        >>> scores = photograd.evaluate(model, capture.test)
+        >>> scores.psnr > 5, [view.name for view in scores.views]
+        (True, ['test/r_000'])
     """
+    require_instance("evaluate", "model", model, Model, "load_model reads one, fit makes one")
+    if not isinstance(views, Sequence) or not all(isinstance(view, View) for view in views):
+        expected, got = "a sequence of Views", type(views).__name__
+        raise DtypeError(message("evaluate", "views", expected, got, "such as capture.test"))
     if not views:
         raise RangeError(
             message(

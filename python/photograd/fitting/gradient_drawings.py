@@ -95,10 +95,10 @@ def draw_picture(axes: Axes, picture: Array, *, pale: bool) -> None:
 def _frame(found: ViewGradients) -> tuple[float, float, float, float]:
     """What of the picture is shown: x from, to, y from (below), to; its shape is the picture's."""
     height, width = found.picture.shape[:2]
-    seen = found.pixels[found.visible]
-    if not len(seen):
+    visible = found.pixels[found.visible]
+    if not len(visible):
         return 0.0, float(width), float(height), 0.0
-    low, high = np.quantile(seen, [0.01, 0.99], axis=0)
+    low, high = np.quantile(visible, [0.01, 0.99], axis=0)
     zoom = min(1.0, 1.45 * float(((high - low) / [width, height]).max()) + 0.02)
     half = 0.5 * zoom * np.array([width, height])
     middle = np.clip((low + high) / 2, half, np.array([width, height]) - half)

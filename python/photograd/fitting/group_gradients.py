@@ -101,19 +101,19 @@ def draw_group_gradients(rows: Mapping[int, GroupGradients]) -> Figure:
     with style.house_style():
         figure = style.new_figure(width, TOP + len(rows) * (PANEL + GAP) + bottom)
         for k, (step, found) in enumerate(rows.items()):
-            places = (
+            panels = (
                 style.place_axes(
                     figure, LEFT + n * (PANEL + GAP), TOP + k * (PANEL + GAP), PANEL, PANEL
                 )
                 for n in range(count)
             )
-            axes = next(places)
+            axes = next(panels)
             axes.imshow(np.clip(found.picture, 0, 1))
             axes.set(xticks=[], yticks=[], ylabel=f"step {step}\nloss {found.loss:.3g}")
-            _signed(next(places), found.d_pixel, "pixels")
+            _signed(next(panels), found.d_pixel, "pixels")
             if found.image is not None:
-                _signed(next(places), found.image, "parameters")
-            _bars(next(places), found.rms)
+                _signed(next(panels), found.image, "parameters")
+            _bars(next(panels), found.rms)
         style.write_title(figure, "What the loss asks of the parameters", left=LEFT)
         style.write_caption(figure, caption, left=LEFT, right=0.1)
     return figure

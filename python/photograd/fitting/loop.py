@@ -24,13 +24,16 @@ import numpy as np
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
+from photograd_course.suggest import choose_from
 
 from photograd._checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
+from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd._descend import descend
 from photograd._fit_options import FitOptions
 from photograd.capture.bounds import estimate_bounds, require_views_of
 from photograd.capture.capture import Capture
+from photograd.errors import RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.checks import (
     require_background_of,
@@ -99,6 +102,8 @@ class Fit:
         than there is; SceneError naming the training cameras that do not see the scene's box (with
         `allow_blind` only if none does).
         """
+        require_instance("Fit.start", "capture", capture, Capture, "load_capture reads one")
+        require_instance("Fit.start", "options", options, FitOptions)
         require_startable(options.representation)
         bounds = estimate_bounds(capture)
         if not allow_blind:
@@ -184,13 +189,28 @@ class Fit:
         return self.data.batches(max_rays)
 
     def mean_gradient(self, group: str, max_rays: int) -> Array:
-        """dL/d params[group] of the loss over all training views, from about `max_rays` rays."""
+        """dL/d params[group] of the loss over all training views, from about `max_rays` rays.
+
+        Args:
+            group: of `model.params`, or "background" where one is learned.
+            max_rays: evenly spaced over the views; more rays, lower variance.
+
+        Returns:
+            An array of the shape of the parameter.
+
+        Raises:
+            RangeError: no group of that name; names the nearest, or all.
+        """
+        known = [*self.model.params, *(["background"] if self.background is not None else [])]
+        if group not in known:
+            expected, remedy = "a group of parameters", choose_from(group, known)
+            raise RangeError(message("Fit.mean_gradient", "group", expected, repr(group), remedy))
         parts = self.data.spread(max_rays)
         return np.asarray(sum(w * self.loss_and_gradients(rows)[1][group] for rows, w in parts))
 
     def run(
         self,
-        folder: Path,
+        folder: str | Path,
         *,
         on_step: Callable[[Progress], None] | None = None,
         should_stop: Callable[[], bool] = lambda: False,
@@ -198,9 +218,20 @@ class Fit:
     ) -> FitResult:
         """Step until the end or until `should_stop`; the folder then holds the checkpoint.
 
-        Raises IoError if it cannot be written, Error if the loss or a gradient is not finite; the
-        last checkpoint then stays as it was.
+        Args:
+            folder: for the checkpoint, model.npz, and for snapshots of some steps.
+            on_step: called after each step.
+            should_stop: asked after each step; True saves and ends the run.
+            checkpoint_seconds: between two checkpoints.
+
+        Returns:
+            Where the checkpoint lies, and how far the fit came.
+
+        Raises:
+            IoError: the checkpoint cannot be written.
+            Error: the loss or a gradient is not finite; the last checkpoint stays as it was.
         """
+        folder = Path(folder)
         keep, pace = snapshot_steps(self.options), Pace(time.perf_counter())
         if self.step_number == 0:
             save_snapshot(folder, self.model, self.options, 0)

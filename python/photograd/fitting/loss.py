@@ -14,7 +14,7 @@ The loss of pixels that are sampled at random:
 A learned background stands behind the photograph too: both terms count.
 
 The loss of a whole picture, in display values; structural similarity and its adjoint are in the
-core, since a fit needs them at every step (texture/ssim.h):
+core, since a fit needs them at every step (cpp/photograd/texture/ssim.h):
 
     image = color + (1 - opacity) background        truth = photograph + (1 - alpha) background
     loss  = (1 - w) mean |image - truth| + w (1 - SSIM(image, truth))       [Kerbl2023, eq. 7]
@@ -73,21 +73,19 @@ def image_loss(
     `premultiplied` holds color times alpha, and alpha; the dtype is that of the rendering. Raises
     ShapeError if the rendering has no opacity, or shapes do not belong together.
     """
-    if outputs.opacity is None:
-        expected = "a rendering with opacity"
-        raise ShapeError(message("image_loss", "outputs", expected, "one without"))
+    opacity = _opacity("image_loss", outputs)
     dtype = outputs.color.dtype
     background = np.asarray(background, dtype)
     photograph = np.ascontiguousarray(premultiplied[:, :3], dtype)
     alpha = np.ascontiguousarray(premultiplied[:, 3], dtype)
-    image = composite_over(outputs.color, outputs.opacity, background)
+    image = composite_over(outputs.color, opacity, background)
     truth = composite_over(photograph, alpha, background)
     encoded = srgb_encode(image) if display else image
     target = srgb_encode(truth) if display else truth
     return ImageLoss(
         l2(encoded, target),
         outputs.color,
-        outputs.opacity,
+        opacity,
         photograph,
         alpha,
         background,
@@ -97,6 +95,15 @@ def image_loss(
         target,
         display,
     )
+
+
+def _opacity(function: str, outputs: Outputs) -> Array:
+    """The opacity of a rendering, which `Outputs` may lack."""
+    if outputs.opacity is None:
+        expected = "an array (R,), to be composited over a background"
+        remedy = "the representation's render returns Outputs(color, opacity)"
+        raise ShapeError(message(function, "outputs.opacity", expected, "None", remedy))
+    return outputs.opacity
 
 
 def image_loss_backward(loss: ImageLoss) -> tuple[Outputs, Array]:
@@ -169,7 +176,7 @@ def picture_loss(
     shape = view.premultiplied.shape[:2]
     dtype = outputs.color.dtype
     behind = np.asarray(background, dtype)
-    opacity = np.asarray(outputs.opacity).reshape(shape)
+    opacity = _opacity("picture_loss", outputs).reshape(shape)
     image = outputs.color.reshape(*shape, 3) + (1 - opacity)[..., None] * behind
     alpha = view.premultiplied[..., 3:].astype(dtype)
     truth = view.premultiplied[..., :3].astype(dtype) + (1 - alpha) * behind

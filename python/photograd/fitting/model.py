@@ -74,7 +74,19 @@ class Model:
 
 
 def load_model(path: str | Path) -> Model:
-    """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""
+    """Load the model that a fit left in a folder.
+
+    Args:
+        path: the folder, or the file model.npz in it, or one of its snapshots.
+
+    Raises:
+        IoError: no file, or one that is damaged or holds something else.
+
+    Example:
+        >>> model = photograd.fit("photos", resolution=8, steps=2, rays=16, folder="model")
+        >>> photograd.load_model("model").field.name
+        'dense_grid'
+    """
     return model_of(load_checkpoint(path), Path(path))
 
 
@@ -151,9 +163,9 @@ def save_snapshot(folder: Path, field: Fittable, options: FitOptions, step: int)
 
 def load_snapshots(folder: Path) -> dict[int, Fittable]:
     """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
-    place = folder if folder.is_dir() else folder.parent
+    beside = folder if folder.is_dir() else folder.parent
     found = {}
-    for file in sorted((place / "snapshots").glob("step_*.npz")):
+    for file in sorted((beside / "snapshots").glob("step_*.npz")):
         saved = load_checkpoint(file)
         found[int(saved.meta["step"])] = model_of(saved, file).field
     return found

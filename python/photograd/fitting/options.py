@@ -2,27 +2,60 @@
 
 from __future__ import annotations
 
+import inspect
 from collections import deque
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from photograd_course.suggest import choose_from
 
 from photograd import _descend as descent
 from photograd._fit_options import FitOptions
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fields import fittable
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def options_for(representation: str, **given: Any) -> FitOptions:
     """The options of a representation: its defaults, but for what is given and not None.
 
-    Raises RangeError for a value without meaning, TypeError for a name that is no option.
+    Args:
+        representation: its name.
+        given: fields of `FitOptions`; None leaves the default.
+
+    Raises:
+        DtypeError: a name that is no option; names the nearest.
+        RangeError: a value without meaning.
     """
+    known_options = {field.name for field in fields(FitOptions)} - {"representation"}
+    for name in sorted(set(given) - known_options):
+        expected, remedy = "an option of FitOptions", choose_from(name, known_options)
+        raise DtypeError(message("fit", name, expected, "an unknown name", remedy))
     chosen = {name: value for name, value in given.items() if value is not None}
     known = fittable().get(representation)
     defaults = {} if known is None else known.fit_defaults
     return FitOptions(**{"representation": representation, **defaults, **chosen})
+
+
+def list_options(function: Function) -> Function:
+    """Decorator: describe the fields of `FitOptions` in the docstring of a function.
+
+    Its entry `options`, the last of its arguments, is followed by one for each field.
+    """
+    own: Any = function
+    described, docstring = inspect.getdoc(FitOptions), inspect.getdoc(function)
+    if described and docstring:  # both are None under python -OO
+        text = described.partition("Attributes:")[2] + "\n"
+        for field in fields(FitOptions):
+            kind = f"{field.type}, default {field.default!r}"
+            text = text.replace(f"\n    {field.name}:", f"\n    {field.name} ({kind}):")
+        text = text[text.index("\n    resolution") :].rstrip()
+        args, _, rest = docstring.partition("\n\nReturns:")
+        own.__doc__ = f"{args}{text}\n\nReturns:{rest}"
+    return function
 
 
 def users_of(option: str) -> tuple[str, ...]:

@@ -48,8 +48,8 @@ def quality_plot(scores: Sequence[Score]) -> Figure:
             for label, (color, mark) in looks.items()
         ]
         height = figure.get_size_inches()[1]
-        place = (LEFT / figure.get_size_inches()[0], 1 - (TOP + PANEL + 0.4) / height)
-        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=place, ncols=3)
+        anchor = (LEFT / figure.get_size_inches()[0], 1 - (TOP + PANEL + 0.4) / height)
+        figure.legend(handles=handles, loc="upper left", bbox_to_anchor=anchor, ncols=3)
         style.write_title(figure, "Quality against size", left=LEFT)
         style.write_caption(figure, caption, left=LEFT, right=0.1)
     return figure

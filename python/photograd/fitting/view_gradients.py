@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from photograd import sh
+from photograd._notebook import EDGE, png_of_sheet, sheet, signed_colors, smaller
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.fitting.data import TrainingView, TrainingViews
@@ -45,6 +46,18 @@ class ViewGradients:
     d_logit: Array
     grad2d: Array
     loss: float
+
+    def _repr_png_(self) -> bytes:
+        """The picture, and dL/d opacity logit at the pixels of the projected means.
+
+        Blue where more opacity lowers the loss.
+        """
+        height, width = self.picture.shape[:2]
+        inside = self.visible & (self.pixels >= 0).all(1) & (self.pixels < [width, height]).all(1)
+        column, row = self.pixels[inside].astype(np.int64).T
+        signed = np.zeros((height, width))
+        np.add.at(signed, (row, column), self.d_logit[inside])
+        return png_of_sheet(sheet([self.picture, signed_colors(smaller(signed))], 2, EDGE // 2))
 
 
 def view_gradients(

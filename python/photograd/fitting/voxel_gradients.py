@@ -114,7 +114,7 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     centers = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
     occupied = np.ones(len(centers), np.bool_)
     empty = np.ones(len(centers), np.bool_)
-    seen = np.zeros(len(centers), np.int64)
+    views = np.zeros(len(centers), np.int64)
     for view in capture.train:
         open_ids = np.flatnonzero(occupied | empty)
         found, rectangle = _footprints(view, centers[open_ids], voxel)
@@ -123,8 +123,8 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
         alpha = np.where(view.valid_mask(), view.rgba()[..., 3], 0.5)
         occupied[shown] &= _count(alpha < OPAQUE, rectangle) == 0
         empty[shown] &= _count(alpha > EMPTY, rectangle) == 0
-        seen[shown] += 1
-    known = (seen >= 2).reshape(shape) & field.active_voxels
+        views[shown] += 1
+    known = (views >= 2).reshape(shape) & field.active_voxels
     return VoxelMasks(known & occupied.reshape(shape), known & empty.reshape(shape))
 
 

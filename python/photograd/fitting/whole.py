@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from photograd._checkpoint import FILE_NAME
+from photograd._checks import require_instance
 from photograd._descend import progress_bar, run_folder
+from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.errors import RangeError, message
+from photograd.fitting.checks import require_startable
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import options_for, refuse_without_effect
+from photograd.fitting.options import list_options, options_for, refuse_without_effect
 
 
+@list_options
 def fit(
     capture: Capture | str | Path,
     representation: str = "dense_grid",
@@ -42,8 +47,8 @@ def fit(
         start_from: a model of the same capture: Gaussians begin on its surfaces, the leaves of an
             octree are cut from it, a textured mesh is that of it.
         bar: show progress on stderr.
-        options: others of `FitOptions` than the representation's defaults, such as `resolution`,
-            `steps` and `seed`.
+        options: fields of `FitOptions`, here with its defaults; a representation may have others,
+            which `options_for` returns.
 
     Returns:
         The model, as `load_model` returns it.
@@ -52,27 +57,43 @@ def fit(
         RangeError: an unknown representation, options without meaning or that take more memory than
             there is, a folder that holds a model already without `resume`, a checkpoint of another
             capture, or options together with `resume`.
-        TypeError: an option that does not exist.
+        DtypeError: an option that does not exist; names the nearest.
         SceneError: training cameras that do not see the scene.
         IoError: a checkpoint that cannot be written, or is not there to resume from, or a folder
             that another run holds.
         Error: a loss or a gradient that is not finite.
+
+    Example:
+        >>> model = photograd.fit("photos", "dense_grid", resolution=16, steps=20, rays=256)
+        >>> step, loss, psnr = model.history.T  # of every step
+        >>> bool(loss[-5:].mean() < loss[:5].mean())
+        True
     """
+    chosen = None if resume else _checked_options(representation, options)
+    if start_from is not None:
+        require_instance("fit", "start_from", start_from, Model, "load_model reads one")
     photographs = capture if isinstance(capture, Capture) else load_capture(capture)
-    place = None if folder is None else Path(folder)
-    with run_folder("fit", place, FILE_NAME, resume=resume):
-        if resume and place is not None:
+    path = None if folder is None else Path(folder)
+    with run_folder("fit", path, FILE_NAME, resume=resume):
+        if chosen is None:
             if options or start_from is not None:
                 expected, got = "options of the checkpoint alone", "others as well"
                 raise RangeError(message("fit", "options", expected, got, "leave them out"))
-            job = Fit.resume(photographs, place)
+            assert path is not None  # `run_folder` refuses to resume without one
+            job = Fit.resume(photographs, path)
         else:
-            chosen = options_for(representation, **options)
-            refuse_without_effect(representation, options)
             job = Fit.start(photographs, chosen, start_from=start_from)
         with ExitStack() as stack:
-            if place is None:
-                place = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
+            if path is None:
+                path = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
             on_step = stack.enter_context(progress_bar("fit", job, shown=bar))
-            job.run(place, on_step=on_step)
-            return load_model(place)
+            job.run(path, on_step=on_step)
+            return load_model(path)
+
+
+def _checked_options(representation: str, options: Mapping[str, Any]) -> FitOptions:
+    """The options of a new fit, refused before photographs are read."""
+    require_startable(representation)
+    chosen = options_for(representation, **options)
+    refuse_without_effect(representation, options)
+    return chosen

@@ -111,7 +111,7 @@ class CullingTree:
         """
         self.boxes = _checked_boxes(boxes)
         require_integer("CullingTree", "max_depth", max_depth, least=0, most=16)
-        level, cell = _places(self.boxes, max_depth)
+        level, cell = _cells(self.boxes, max_depth)
         # A row (level, x, y, z) for every cell in use and all cells above it.
         rows = [
             np.column_stack([np.full(len(level), k), cell >> (max_depth - k)])[level >= k]
@@ -134,13 +134,13 @@ class CullingTree:
 
     def cull(self, frustum: Frustum) -> Culled:
         """Walk down level by level; below a node that is missed, nothing is looked at."""
-        seen = np.zeros(len(self.parent), np.bool_)
+        visible = np.zeros(len(self.parent), np.bool_)
         tested = 0
         for nodes in self._levels:
-            waiting = nodes[(self.parent[nodes] < 0) | seen[self.parent[nodes]]]
+            waiting = nodes[(self.parent[nodes] < 0) | visible[self.parent[nodes]]]
             tested += len(waiting)
-            seen[waiting] = ~frustum.misses(self.node_boxes[waiting])
-        left = np.flatnonzero(seen[self.node])
+            visible[waiting] = ~frustum.misses(self.node_boxes[waiting])
+        left = np.flatnonzero(visible[self.node])
         visible = np.zeros(len(self.boxes), np.bool_)
         visible[left] = ~frustum.misses(self.boxes[left])
         return Culled(visible, tested + len(left))
@@ -151,7 +151,7 @@ class CullingTree:
         np.maximum.at(self.node_boxes[:, 1], nodes, boxes[:, 1])
 
 
-def _places(boxes: Array, depth: int) -> tuple[Array, Array]:
+def _cells(boxes: Array, depth: int) -> tuple[Array, Array]:
     """Level (N,) of each object, and the finest cell (N, 3) in which its center lies."""
     low = boxes[:, 0].min(axis=0)
     side = max(float((boxes[:, 1].max(axis=0) - low).max()), 1e-300)

@@ -38,15 +38,15 @@ def clustered(mesh: Mesh, cell: float) -> Level:
     """The mesh with one vertex a lattice cell of `cell` meters.
 
     The error is the way of the vertex that moves most, and, where triangles vanish and leave a
-    segment that belongs to no other triangle, what `_lost` says of it.
+    segment that belongs to no other triangle, what `_removed_error` says of it.
 
     Raises:
         RangeError: a cell that is not positive, or so large that no triangle is left.
     """
     require_number("clustered", "cell", cell, least=0.0, open_ends=True)
     vertices = mesh.vertices.astype(np.float64)
-    place = np.floor((vertices - vertices.min(axis=0)) / cell).astype(np.int64)
-    _, cluster, size = np.unique(place, axis=0, return_inverse=True, return_counts=True)
+    cells = np.floor((vertices - vertices.min(axis=0)) / cell).astype(np.int64)
+    _, cluster, size = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     cluster = cluster.reshape(-1)
     means = np.zeros((len(size), 3))
     np.add.at(means, cluster, vertices)
@@ -60,7 +60,7 @@ def clustered(mesh: Mesh, cell: float) -> Level:
         raise RangeError(message("clustered", "cell", "a smaller lattice", got))
     used, kept_again = np.unique(kept, return_inverse=True)
     coarse = Mesh(means[used], kept_again.reshape(-1, 3))
-    return Level(coarse, moved + _lost(faces, kept, means))
+    return Level(coarse, moved + _removed_error(faces, kept, means))
 
 
 def _without_doubles(faces: Array) -> Array:
@@ -71,7 +71,7 @@ def _without_doubles(faces: Array) -> Array:
     return rows
 
 
-def _lost(faces: Array, kept: Array, means: Array) -> float:
+def _removed_error(faces: Array, kept: Array, means: Array) -> float:
     """How far from the kept triangles the rest of the clustered surface can be.
 
     A dropped triangle became a segment or a point. An edge of a kept triangle is no loss. On any
@@ -88,12 +88,12 @@ def _lost(faces: Array, kept: Array, means: Array) -> float:
     known = np.concatenate([kept[:, [0, 1]], kept[:, [1, 2]], kept[:, [2, 0]]])
     edges, known = np.sort(edges, axis=1), np.sort(known, axis=1)
     code = edges[:, 0] * len(means) + edges[:, 1]
-    lost = edges[~np.isin(code, known[:, 0] * len(means) + known[:, 1])]
-    lost = lost[(lost[:, 0] != lost[:, 1]) | (gap[lost[:, 0]] > 0)]
-    if not len(lost):
+    removed = edges[~np.isin(code, known[:, 0] * len(means) + known[:, 1])]
+    removed = removed[(removed[:, 0] != removed[:, 1]) | (gap[removed[:, 0]] > 0)]
+    if not len(removed):
         return 0.0
-    length = np.linalg.norm(means[lost[:, 0]] - means[lost[:, 1]], axis=1)
-    return float((0.5 * length + gap[lost].max(axis=1)).max())
+    length = np.linalg.norm(means[removed[:, 0]] - means[removed[:, 1]], axis=1)
+    return float((0.5 * length + gap[removed].max(axis=1)).max())
 
 
 class LevelsOfDetail:

@@ -1,7 +1,7 @@
 """Triangle meshes and the rays that meet them: what was hit, and where.
 
 The answer to *which* triangle comes from a bounding volume hierarchy in float32, robust at shared
-edges; *where* is recomputed in the dtype of the rays (cpp/photograd/geometry/).
+edges; *where* is recomputed in the dtype of the rays (cpp/photograd/geometry/bvh.h).
 """
 
 from __future__ import annotations
@@ -277,8 +277,8 @@ def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:
     corners = mesh.vertices.astype(np.float64)[mesh.faces]
     step = max(1, 100_000 // len(corners))  # pairs at a time: 2.4 MB a vector
     parts = [_nearest(rows[i : i + step], corners) for i in range(0, len(rows), step)]
-    distance, place = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return distance, place
+    distance, nearest = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return distance, nearest
 
 
 def _nearest(points: Array, corners: Array) -> tuple[Array, Array]:
@@ -297,12 +297,12 @@ def _nearest(points: Array, corners: Array) -> tuple[Array, Array]:
     least = gaps.swapaxes(0, 1).reshape(len(points), -1).argmin(axis=1)
     kind, face = np.divmod(least, len(corners))
     row = np.arange(len(points))
-    place = np.array(candidates)[kind, row, face]
-    return np.sqrt(gaps[kind, row, face]), place
+    point = np.array(candidates)[kind, row, face]
+    return np.sqrt(gaps[kind, row, face]), point
 
 
 def _on_segment(p: Array, a: Array, b: Array) -> Array:
     along = b - a
     share = ((p - a) * along).sum(axis=-1) / (along**2).sum(axis=-1)
-    place: Array = a + share.clip(0.0, 1.0)[..., None] * along
-    return place
+    point: Array = a + share.clip(0.0, 1.0)[..., None] * along
+    return point

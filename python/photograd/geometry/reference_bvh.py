@@ -1,8 +1,8 @@
 """A bounding volume hierarchy that can be looked into, and what each ray costs in it.
 
 Built by the surface area heuristic (cpp/photograd/geometry/reference/bvh_build.h) and walked with a
-stack, one ray at a time (bvh_walk.h). `photograd.geometry.mesh.Bvh` gives the same answers many
-times faster; this one is there to be read, drawn and counted.
+stack, one ray at a time (cpp/photograd/geometry/reference/bvh_walk.h). `photograd.Bvh` gives the
+same answers many times faster; this one is there to be read, drawn and counted.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 A shape is a description; `Body` makes it ready to be asked. All numbers of a body (radii, places)
 are in one array, `Body.numbers`, to be printed, changed and fitted. The mathematics is in
-cpp/photograd/ops/sdf_shapes.h, sdf_combine.h and geometry/reference/sphere_trace.h.
+cpp/photograd/ops/sdf_shapes.h, cpp/photograd/ops/sdf_combine.h and
+cpp/photograd/geometry/reference/sphere_trace.h.
 """
 
 from __future__ import annotations

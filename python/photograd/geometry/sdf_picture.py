@@ -83,24 +83,24 @@ def draw_body(
         row, column = divmod(int(np.argmax(hits.end == GAVE_UP)), camera.width)
         got = f"more in row {row}, column {column}"
         raise RangeError(message("draw_body", "body", "rays of at most 1000 steps", got))
-    seen = np.flatnonzero(hits.hit)
-    place = origins[seen] + hits.t[seen, None] * directions[seen]
-    normal = body.normals(place)
+    visible = np.flatnonzero(hits.hit)
+    point = origins[visible] + hits.t[visible, None] * directions[visible]
+    normal = body.normals(point)
     cosine = (normal @ sun).clip(0.0)
-    start = place + OFFSET * normal
+    start = point + OFFSET * normal
     hidden = body.trace(start, np.broadcast_to(sun, start.shape), t_max=t_max).hit & (cosine > 0)
     light = irradiance / np.pi * cosine * ~hidden + 0.5 * sky * (1.0 + normal[:, 1])
     shape = (camera.height, camera.width)
     return BodyPicture(
-        _on_picture(seen, light[:, None] * color, (*shape, 3)),
+        _on_picture(visible, light[:, None] * color, (*shape, 3)),
         hits.t.reshape(shape),
-        _on_picture(seen, normal, (*shape, 3)),
+        _on_picture(visible, normal, (*shape, 3)),
         hits.steps.reshape(shape),
-        _on_picture(seen, hidden, shape),
+        _on_picture(visible, hidden, shape),
     )
 
 
-def _on_picture(seen: Array, rows: Array, shape: tuple[int, ...]) -> Array:
+def _on_picture(visible: Array, rows: Array, shape: tuple[int, ...]) -> Array:
     picture = np.zeros((shape[0] * shape[1], *shape[2:]), rows.dtype)
-    picture[seen] = rows
+    picture[visible] = rows
     return picture.reshape(shape)

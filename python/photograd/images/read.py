@@ -106,9 +106,16 @@ def read_image(path: str | Path) -> ImageArray:
     content says which it is, not the name. Gray is repeated in the three colors; a palette is
     looked up. The orientation tag of JPEG is not applied, since poses refer to pixels as stored.
 
+    Args:
+        path: of the file.
+
     Raises:
         IoError: missing, truncated, damaged, zero-size, non-finite, of an unsupported mode, or a
             color PNG of 16 bits without OpenCV (extra `png16`).
+
+    Example:
+        >>> photograd.read_image("view.png").shape
+        (16, 16, 4)
     """
     path = Path(path)
     _require_file("read_image", path)

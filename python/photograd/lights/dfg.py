@@ -52,11 +52,11 @@ def _of_one_roughness(roughness: float, mu: float) -> Array:
     sin_h = np.sqrt(a2 * u / (1 - u + a2 * u))[:, None]
     o_dot_h = np.sqrt(1 - mu * mu) * sin_h * np.cos(phi) + mu * n_dot_h
     n_dot_i = 2 * o_dot_h * n_dot_h - mu
-    seen = (o_dot_h > 0) & (n_dot_i > 0)
-    n_dot_i = np.where(seen, n_dot_i, 1.0)
+    visible = (o_dot_h > 0) & (n_dot_i > 0)
+    n_dot_i = np.where(visible, n_dot_i, 1.0)
     G2 = 1 / (1 + _hidden(a2, mu) + _hidden(a2, n_dot_i))
-    part = np.where(seen, G2 * o_dot_h / (mu * n_dot_h), 0.0) * du[:, None] / TURNS
-    ramp = np.where(seen, 1 - o_dot_h, 0.0) ** 5
+    part = np.where(visible, G2 * o_dot_h / (mu * n_dot_h), 0.0) * du[:, None] / TURNS
+    ramp = np.where(visible, 1 - o_dot_h, 0.0) ** 5
     return np.array([(part * (1 - ramp)).sum(), (part * ramp).sum()])
 
 
@@ -106,9 +106,9 @@ class DfgTable:
 
 def _cells(number: ArrayLike, size: int) -> tuple[Array, Array]:
     """Number of the first of two cells, and the part (..., 1) of the second."""
-    place = np.clip(np.asarray(number, np.float64) * size - 0.5, 0, size - 1)
-    first = np.minimum(place.astype(np.intp), size - 2)
-    return first, (place - first)[..., None]
+    at = np.clip(np.asarray(number, np.float64) * size - 0.5, 0, size - 1)
+    first = np.minimum(at.astype(np.intp), size - 2)
+    return first, (at - first)[..., None]
 
 
 def dfg_table(size: int = 64) -> DfgTable:

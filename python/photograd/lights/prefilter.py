@@ -167,11 +167,11 @@ class SpecularMap:
 
         Beyond the first and the last, those.
         """
-        place = np.interp(np.asarray(roughness), self.roughnesses, np.arange(len(self.levels)))
-        place = np.broadcast_to(place, np.shape(w)[:-1])
-        found = np.zeros((*place.shape, 3))
+        at = np.interp(np.asarray(roughness), self.roughnesses, np.arange(len(self.levels)))
+        at = np.broadcast_to(at, np.shape(w)[:-1])
+        found = np.zeros((*at.shape, 3))
         for number, level in enumerate(self.levels):
-            share = np.maximum(1 - np.abs(place - number), 0)
+            share = np.maximum(1 - np.abs(at - number), 0)
             used = share > 0
             found[used] += share[used][:, None] * level.at(np.asarray(w)[used])
         return found

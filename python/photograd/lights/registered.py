@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd._registry import Parameters, Registry
+from photograd._registry import ModelParameters, Registry
 from photograd.errors import RangeError, message
 from photograd.lights.base import Light
 from photograd.types import Array
@@ -41,17 +41,17 @@ class RegisteredLight(Light):
         call.run(self._functions().pdf, *leading, nowhere, nowhere)  # the core looks at the numbers
 
     @classmethod
-    def parameters(cls) -> Parameters:
+    def parameters(cls) -> ModelParameters:
         """What is differentiated, in the core's order."""
-        return Parameters.of(cls._functions().parameters())
+        return ModelParameters.of(cls._functions().parameters())
 
     @classmethod
-    def constants(cls) -> Parameters:
+    def constants(cls) -> ModelParameters:
         """What is not: it moves edges, where no derivative exists."""
-        return Parameters.of(cls._functions().constants())
+        return ModelParameters.of(cls._functions().constants())
 
     @classmethod
-    def _described(cls) -> tuple[Parameters, Parameters]:
+    def _described(cls) -> tuple[ModelParameters, ModelParameters]:
         return cls.parameters(), cls.constants()
 
     @classmethod
@@ -63,7 +63,7 @@ class RegisteredLight(Light):
         call = Arguments(type(self).__name__, dtype)
         return self._functions(), tuple(self._pack(call, each) for each in self._described())
 
-    def _pack(self, call: Arguments, described: Parameters) -> Array:
+    def _pack(self, call: Arguments, described: ModelParameters) -> Array:
         values = {parameter.name: getattr(self, parameter.name) for parameter in described}
         return described.pack_one(call, "", values, positive=False)
 

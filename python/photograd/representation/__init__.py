@@ -1,9 +1,9 @@
 """The protocol that every scene representation speaks, and the registry of those that exist.
 
 One loop (`photograd.fitting.loop`), one command for pictures of gradients and one set of proofs
-serve everything that is registered here. What a capture can be fitted with is a `Fittable`; all
-others say in `teaching_example` why not. Parameters are NumPy arrays; what is expensive to rebuild
-lives in C++ objects.
+(`check_gradients`) serve everything that is registered here. What a capture can be fitted with is a
+`Fittable`; all others say in `teaching_example` why not. Parameters are NumPy arrays; what is
+expensive to rebuild lives in C++ objects.
 """
 
 from photograd.representation.base import (
@@ -30,6 +30,7 @@ from photograd.representation.fittable import (
     Start,
     fittable,
 )
+from photograd.representation.gradients import GradientChecks, GradientProblem, check_gradients
 
 __all__ = [
     "COPIES",
@@ -37,6 +38,8 @@ __all__ = [
     "CanvasBatch",
     "FitInProgress",
     "Fittable",
+    "GradientChecks",
+    "GradientProblem",
     "Gradients",
     "ImageBatch",
     "Memory",
@@ -47,6 +50,7 @@ __all__ = [
     "RenderOptions",
     "Representation",
     "Start",
+    "check_gradients",
     "dense_gradient",
     "fittable",
     "register",

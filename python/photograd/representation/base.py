@@ -52,10 +52,9 @@ class ParamSpec:
 class Representation(ABC):
     """A scene as arrays of parameters, rendered and differentiated.
 
-    A class of its own sets `name` and `capabilities`, and each instance sets `params`;
-    `docs/five_tasks.md` shows a whole one. tests/registry/ proves the adjoint of each registered
-    class with `example` and `example_batch`; `photograd_course.gradcheck` proves that of any other.
-    To be fitted to a capture it has to be a `Fittable`.
+    A class of its own sets `name` and `capabilities`, and each instance sets `params`; the page
+    "Five tasks" of the book shows a whole one. `photograd.check_gradients` proves its adjoint, with
+    `example` and `example_batch`. To be fitted to a capture it has to be a `Fittable`.
 
     Attributes:
         name: what options, files and the registry call it.

@@ -113,10 +113,10 @@ class Schedule:
     every: int = 100
 
     def __post_init__(self) -> None:
-        for name, least in (("first", 0), ("last", 0), ("every", 1)):
-            if getattr(self, name) < least:
+        for name, lowest in (("first", 0), ("last", 0), ("every", 1)):
+            if getattr(self, name) < lowest:
                 found = getattr(self, name)
-                raise RangeError(message("Schedule", name, f"{least} or more", f"{found}"))
+                raise RangeError(message("Schedule", name, f"{lowest} or more", f"{found}"))
 
     def due(self, step: int) -> bool:
         """Whether something happens before this step."""

@@ -41,7 +41,7 @@ from photograd.splats.density import (
 )
 from photograd.types import Array
 
-MOST_COPIES = 51
+MAX_COPIES = 51
 """At so many copies of a Gaussian the formula ends, as in the authors' code."""
 
 FAINT_ENOUGH = 0.06
@@ -131,7 +131,7 @@ def _copied(params: Params, chosen: NDArray[np.int64], targets: NDArray[np.int64
     count = len(params["means"])
     copies = np.bincount(chosen, minlength=count) + 1
     sources = np.flatnonzero(copies > 1)
-    n = np.minimum(copies[sources], MOST_COPIES)
+    n = np.minimum(copies[sources], MAX_COPIES)
     total = opacities(params)[sources]
     share = -expm1(log1p(-total) / n)
     shrink = log(total / _coverage(share, n))

@@ -36,12 +36,12 @@ def scene_box(gaussians: Gaussians) -> Array:
         raise RangeError(message("scene_box", "gaussians", "at least one", 0))
     low, high = np.percentile(gaussians.means.astype(np.float64), [2, 98], axis=0)
     # What float32 still resolves there.
-    least = 1e-4 * float(np.abs([low, high]).max())
-    if float((high - low).max()) > least:
+    min_extent = 1e-4 * float(np.abs([low, high]).max())
+    if float((high - low).max()) > min_extent:
         pad = PADDING * (high - low)
         return np.stack([low - pad, high + pad])
     # Half an edge of the cube in a sphere: cameras stand so that the sphere fills the picture.
-    half = max(SIGMAS * _widest(gaussians) / np.sqrt(3.0), least) or 1.0
+    half = max(SIGMAS * _widest(gaussians) / np.sqrt(3.0), min_extent) or 1.0
     middle = 0.5 * (low + high)
     return np.stack([middle - half, middle + half])
 

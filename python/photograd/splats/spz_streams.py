@@ -202,11 +202,11 @@ def _unzstd(path: Path, name: str, body: bytes, size: int) -> bytes:
     return data
 
 
-def _inflate(path: Path, content: bytes, most: int) -> tuple[bytes, str]:
-    """At most `most` bytes of a gzip stream, and what comes then: "whole", "more" or "cut"."""
+def _inflate(path: Path, content: bytes, limit: int) -> tuple[bytes, str]:
+    """At most `limit` bytes of a gzip stream, and what comes then: "whole", "more" or "cut"."""
     stream = zlib.decompressobj(wbits=31)
     try:
-        data = stream.decompress(content, most)
+        data = stream.decompress(content, limit)
         rest = b"" if stream.eof else stream.decompress(stream.unconsumed_tail, 1)
     except zlib.error as failure:
         raise refuse(path, "a whole gzip stream", failure) from failure

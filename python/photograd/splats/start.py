@@ -39,7 +39,7 @@ FIRST_OPACITY = 0.1
 CARVED = 0.6
 """Silhouettes that cover less of the pictures than this say where the scene is."""
 
-MOST_TRIES = 64
+MAX_TRIES = 64
 """A hull that holds less than this share of its box gets fewer points."""
 
 _PAIRS_AT_ONCE = 1 << 18
@@ -120,8 +120,8 @@ def neighbor_distance(points: Array) -> Array:
         near.sort(axis=1)
         found[part] = near[:, 1:].mean(axis=1)  # the nearest is the point itself
     reach = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
-    least = 1e-7 * max(float(reach), 1e-7)
-    return np.maximum(np.sqrt(found), least)
+    min_distance = 1e-7 * max(float(reach), 1e-7)
+    return np.maximum(np.sqrt(found), min_distance)
 
 
 def random_points(
@@ -133,14 +133,14 @@ def random_points(
     """
     silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
     carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
-    seen = _occupied(capture.train) if carve else []
+    silhouettes = _occupied(capture.train) if carve else []
     kept: list[Array] = []
     have = tried = 0
-    while have < count and tried < MOST_TRIES * count:
+    while have < count and tried < MAX_TRIES * count:
         pixel = np.arange(tried, tried + count)[:, None]
         u = uniform(seed, step=0, pixel=pixel, sample=6, dimension=np.arange(3))
         points = box[0] + u * (box[1] - box[0])
-        kept.append(points[_inside(seen, points)])
+        kept.append(points[_inside(silhouettes, points)])
         have, tried = have + len(kept[-1]), tried + count
     whole = float(np.prod(box[1] - box[0]))
     if have == 0:
@@ -150,13 +150,13 @@ def random_points(
     return found, whole * have / tried, f"{len(found)} random points {where}"
 
 
-def mean_colors(views: Sequence[View], points: Array, *, most: int = 24) -> Array:
+def mean_colors(views: Sequence[View], points: Array, *, max_views: int = 24) -> Array:
     """(N, 3) display colors: the mean of the pixels that points (N, 3) land on; gray for none.
 
     Nothing is hidden by anything here, which is good enough to begin with.
     """
     total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
-    for view in views[:: max(1, len(views) // most)]:
+    for view in views[:: max(1, len(views) // max_views)]:
         rows, column, row = _landing(view.camera, points)
         rgba = view.rgba()[row, column].astype(np.float64)
         color = display_color(rgba[:, :3], view.color_space)
@@ -171,10 +171,10 @@ def _occupied(views: Sequence[View]) -> list[tuple[Camera, Array]]:
     return [(view.camera, (view.rgba()[..., 3] > 0) | ~view.valid_mask()) for view in views]
 
 
-def _inside(seen: Sequence[tuple[Camera, Array]], points: Array) -> Array:
+def _inside(silhouettes: Sequence[tuple[Camera, Array]], points: Array) -> Array:
     """(N,) whether every picture that shows a point may show the object there."""
     alive = np.ones(len(points), np.bool_)
-    for camera, occupied in seen:
+    for camera, occupied in silhouettes:
         rows, column, row = _landing(camera, points)
         alive[rows] &= occupied[row, column]
     return alive
@@ -186,8 +186,8 @@ def _landing(camera: Camera, points: Array) -> tuple[Array, Array, Array]:
     with np.errstate(invalid="ignore"):
         shown = (depth > 0) & (pixels >= 0).all(axis=1)
         shown &= (pixels < [camera.width, camera.height]).all(axis=1)
-    place = pixels[shown].astype(np.int64)
-    return np.flatnonzero(shown), place[:, 0], place[:, 1]
+    pixel = pixels[shown].astype(np.int64)
+    return np.flatnonzero(shown), pixel[:, 0], pixel[:, 1]
 
 
 def _some_points(capture: Capture, count: int, seed: int) -> tuple[Array, Array]:
@@ -229,7 +229,7 @@ def scene_extent(capture: Capture, box: Array) -> float:
 
     Cameras that all stand in one place say nothing: then half the diagonal of the box.
     """
-    places = np.array([view.camera.position for view in capture.train])
-    spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    positions = np.array([view.camera.position for view in capture.train])
+    spread = float(np.linalg.norm(positions - positions.mean(axis=0), axis=1).max())
     diagonal = norm(box[1] - box[0])
     return 1.1 * spread if spread > 0.05 * diagonal else 0.5 * diagonal

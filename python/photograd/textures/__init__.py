@@ -3,7 +3,7 @@
 A texture is an array T[row, column, channel] of shape (H, W, C), float32 or float64, with 1 to 4
 channels. Texture coordinates (u, v) lie in [0, 1], v points down, the center of texel i of n lies
 at (i + 0.5) / n, and outside of the outermost centers the border's value continues. The formulas
-stand in cpp/photograd/ops/bilinear.h and cpp/photograd/texture/.
+stand in cpp/photograd/ops/bilinear.h and cpp/photograd/texture/mip_chain.h.
 """
 
 from photograd.textures.mips import (

@@ -30,6 +30,7 @@ from photograd._checkpoint import (
     save_checkpoint,
 )
 from photograd._descend import Progress, descend, progress_bar, run_folder
+from photograd._notebook import EDGE, RED, png_of_sheet, sheet
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.textures.sample import TexturePlan, sample_backward
 from photograd.types import Array
@@ -53,6 +54,16 @@ class RecoveredTexture:
     losses: NDArray[np.float64]
     unseen: NDArray[np.bool_]
     learning_rate: float
+
+    def _repr_png_(self) -> bytes:
+        """The first three channels, or one as gray; beside it, in red, the texels that are unseen.
+
+        Values are shown as display values.
+        """
+        channels = [min(k, self.texture.shape[2] - 1) for k in range(3)]
+        shown = self.texture[..., channels].astype(np.float64)
+        unseen = np.where(self.unseen[..., None], RED, 1.0)
+        return png_of_sheet(sheet([shown, unseen], 2, EDGE // 2))
 
 
 def stable_learning_rate(

@@ -2,7 +2,7 @@
 
 `Scene` says what there is, `PathTracer` draws it; `read_scene`, `read_model` (mesh files) and
 `builtin` bring scenes from files and by name; `recover` finds in pictures what a scene is made of.
-The mathematics is in cpp/photograd/render/path/tracer.h and adjoint.h.
+The mathematics is in cpp/photograd/render/path/tracer.h and cpp/photograd/render/path/adjoint.h.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.density_files import read_density
 from photograd.transport.derivative import add_derivative_samples, derivative_image, direction_of
 from photograd.transport.inverse import (
-    Recovery,
+    InverseRendering,
+    Parameter,
     RecoveryOptions,
     RecoveryResult,
     Target,
-    Unknown,
     recover,
     scene_with,
 )
@@ -33,9 +33,9 @@ from photograd.transport.mesh_files import (
 from photograd.transport.occlusion_map import bake_ambient_occlusion
 from photograd.transport.particles import (
     Emitted,
+    IrradianceSensor,
     ParticleOptions,
     PhotonMap,
-    Receiver,
     emit_particles,
     trace_light,
 )
@@ -54,6 +54,8 @@ __all__ = [
     "DensityGrid",
     "Emitted",
     "Environment",
+    "InverseRendering",
+    "IrradianceSensor",
     "Lens",
     "Material",
     "Medium",
@@ -62,12 +64,11 @@ __all__ = [
     "ModelFile",
     "NormalMap",
     "OcclusionMap",
+    "Parameter",
     "ParticleOptions",
     "PathOptions",
     "PathTracer",
     "PhotonMap",
-    "Receiver",
-    "Recovery",
     "RecoveryOptions",
     "RecoveryResult",
     "Scene",
@@ -77,7 +78,6 @@ __all__ = [
     "Target",
     "Texture",
     "TextureUse",
-    "Unknown",
     "add_derivative_samples",
     "bake_ambient_occlusion",
     "builtin_scene",

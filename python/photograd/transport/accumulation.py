@@ -211,7 +211,7 @@ def sample_counts(d_image: Array, spp: int, spread: Spread) -> Array | None:
 
 
 def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: Spread) -> Array | None:
-    """The same for two pictures that are each other's cotangent (inverse/loss.py).
+    """The same for two pictures that are each other's cotangent, as in `dual_buffer_loss`.
 
     A pixel's paths serve its derivative, where |d_p| s_p says how many are wanted, and its picture,
     whose noise tells most where d_p may be small. So most are dealt out evenly, and the others by

@@ -77,10 +77,10 @@ def smoke_densities(n: int = 32) -> npt.NDArray[np.float64]:
     """Billows (n, n, n) from 0 to 1 in a box, thin towards the rim of the ball in it."""
     at = (np.arange(n) + 0.5) / n * 2 - 1
     x, y, z = np.meshgrid(at, at, at, indexing="ij")
-    wave = np.sin(5 * x + 2 * np.sin(3 * y)) + np.sin(6 * y + 2 * np.sin(4 * z))
-    wave = wave + np.sin(5 * z + 2 * np.sin(5 * x))
+    ripples = np.sin(5 * x + 2 * np.sin(3 * y)) + np.sin(6 * y + 2 * np.sin(4 * z))
+    ripples = ripples + np.sin(5 * z + 2 * np.sin(5 * x))
     r = np.sqrt(x * x + y * y + z * z)
-    densities: npt.NDArray[np.float64] = np.clip(0.35 + 0.35 * wave, 0.0, 1.0)
+    densities: npt.NDArray[np.float64] = np.clip(0.35 + 0.35 * ripples, 0.0, 1.0)
     densities *= np.clip(4 * (1 - r), 0.0, 1.0)
     return densities
 
@@ -111,9 +111,9 @@ def wax(size: int = 256) -> Scene:
         ),
     }
     camera = camera_at([0.0, 1.1, 4.8], [0.0, 0.45, 0.0], 40.0, size, size)
-    lamp = QuadLight([-2.0, 2.8, -2.2], [4.0, 0.0, 0.0], [0.0, 1.0, 1.0], [7.0, 6.4, 5.6])
+    light = QuadLight([-2.0, 2.8, -2.2], [4.0, 0.0, 0.0], [0.0, 1.0, 1.0], [7.0, 6.4, 5.6])
     sky = Environment(np.array([0.35, 0.45, 0.6]), np.full(3, 0.3), np.full(3, 0.1))
-    return Scene("wax", shapes, materials, camera, sky, (lamp,), media=media)
+    return Scene("wax", shapes, materials, camera, sky, (light,), media=media)
 
 
 # A ball that is thrown, a die that turns, a ball of glass that rolls away: motion blur.
@@ -145,9 +145,9 @@ def thrown(size: int = 256) -> Scene:
         "copper": Material("ggx_metal", {"f0": [0.95, 0.64, 0.54], "roughness": 0.2}),
     }
     camera = camera_at([0.0, 1.4, 4.6], [0.0, 0.65, 0.0], 33.0, size, size)
-    lamp = QuadLight([-2.6, 3.2, 1.4], [1.6, 0.0, 0.0], [0.0, -0.8, 1.0], [20.0, 18.5, 16.5])
+    light = QuadLight([-2.6, 3.2, 1.4], [1.6, 0.0, 0.0], [0.0, -0.8, 1.0], [20.0, 18.5, 16.5])
     sky = Environment(np.array([0.3, 0.42, 0.6]), np.full(3, 0.25), np.full(3, 0.1))
-    return Scene("thrown", shapes, materials, camera, sky, (lamp,))
+    return Scene("thrown", shapes, materials, camera, sky, (light,))
 
 
 def _turned(degrees: float, about: list[float], shift: list[float]) -> np.ndarray:
@@ -208,9 +208,9 @@ def carved(size: int = 256) -> Scene:
         "glass": Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]}),
     }
     camera = camera_at([0.0, 1.3, 4.6], [0.0, 0.48, 0.0], 33.0, size, size)
-    lamp = QuadLight([-2.6, 3.2, 1.4], [1.6, 0.0, 0.0], [0.0, -0.8, 1.0], [20.0, 18.5, 16.5])
+    light = QuadLight([-2.6, 3.2, 1.4], [1.6, 0.0, 0.0], [0.0, -0.8, 1.0], [20.0, 18.5, 16.5])
     sky = Environment(np.array([0.3, 0.42, 0.6]), np.full(3, 0.25), np.full(3, 0.1))
-    return Scene("carved", shapes, materials, camera, sky, (lamp,))
+    return Scene("carved", shapes, materials, camera, sky, (light,))
 
 
 # Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke,
@@ -293,11 +293,20 @@ BUILTIN: dict[str, Callable[[int], Scene]] = {
 
 
 def builtin_scene(name: str, size: int = 256) -> Scene:
-    """A scene of `BUILTIN`, with a square camera of `size` pixels.
+    """A scene that needs no file, with a square camera.
+
+    Args:
+        name: one of `photograd.transport.builtin.BUILTIN`, such as "cornell-box".
+        size: pixels along an edge of its pictures.
 
     Raises:
-        SceneError: no such scene.
-        RangeError: no such size.
+        SceneError: no such scene; names the nearest.
+        RangeError: size below 1.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 16)
+        >>> sorted(room.materials)
+        ['green', 'lamp', 'red', 'white']
     """
     if name not in BUILTIN:
         known = choose_from(name, BUILTIN)

@@ -41,9 +41,9 @@ def instances_of(meshes: Sequence[MeshShape]) -> tuple[Array, Array]:
     numbers: list[int] = []
     matrices: list[Array] = []
     for number, mesh in enumerate(meshes):
-        places = mesh.places or (np.eye(4),)
-        numbers += [number] * len(places)
-        matrices += [place[:3] for place in places]
+        instances = mesh.instances or (np.eye(4),)
+        numbers += [number] * len(instances)
+        matrices += [instance[:3] for instance in instances]
     return np.array(numbers, np.int32), np.array(matrices, np.float64).reshape(-1, 3, 4)
 
 
@@ -76,13 +76,13 @@ def cutoffs_of(scene: Scene) -> list[float]:
 def glows_of(scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int]]:
     """Of each shape the number of the texture that scales its emission, and the first channel."""
     order = {name: number for number, name in enumerate(scene.textures)}
-    uses = [getattr(shape, "glow", None) for shape in shapes]
+    uses = [getattr(shape, "emission_texture", None) for shape in shapes]
     return [(-1, 0) if use is None else (order[use.texture], use.channel) for use in uses]
 
 
 def mean_emission(scene: Scene, shape: Shape) -> Array:
     """Radiance (3,) of a shape, over its texture: how often it is asked as a light."""
-    use = getattr(shape, "glow", None)
+    use = getattr(shape, "emission_texture", None)
     if use is None:
         return shape.emission
     channels = scene.textures[use.texture].values[..., use.channel : use.channel + 3]
@@ -96,8 +96,8 @@ def _uses(material: Material, order: dict[str, int]) -> list[Use]:
     for parameter in material.parameters:
         use = material.textures.get(parameter.name)
         if use is not None:
-            place = (order[use.texture], use.channel, first, parameter.size)
-            found.append((*place, parameter.lo, parameter.hi))
+            row = (order[use.texture], use.channel, first, parameter.size)
+            found.append((*row, parameter.lo, parameter.hi))
         first += parameter.size
     return sorted(found)
 
@@ -134,7 +134,7 @@ SURFACES = (QuadLight, SphereLight, TriangleLight)
 
 
 @dataclass(frozen=True, eq=False)
-class ListedLight:
+class PackedLight:
     """A light without a surface.
 
     Attributes:
@@ -171,21 +171,21 @@ class ListedLight:
         }
 
 
-def listed_lights(scene: Scene) -> list[ListedLight]:
+def packed_lights(scene: Scene) -> list[PackedLight]:
     """The environment, if there is one, and the lights of the list that have no surface."""
     found = [_dome(scene.environment)] if scene.environment is not None else []
     for i, light in enumerate(scene.lights):
         if isinstance(light, SURFACES):
             continue
         if isinstance(light, EnvironmentMap):
-            found.append(ListedLight(light, {f"lights.{i}.texels": light.texels}))
+            found.append(PackedLight(light, {f"lights.{i}.texels": light.texels}))
         else:
             assert isinstance(light, RegisteredLight)
             values = {
                 f"lights.{i}.{parameter.name}": np.asarray(getattr(light, parameter.name))
                 for parameter in light.parameters()
             }
-            found.append(ListedLight(light, values))
+            found.append(PackedLight(light, values))
     return found
 
 
@@ -198,9 +198,9 @@ def light_shapes(scene: Scene) -> dict[str, Shape]:
     }
 
 
-def _dome(environment: Environment) -> ListedLight:
+def _dome(environment: Environment) -> PackedLight:
     colors = np.array([environment.zenith, environment.horizon, environment.ground])
-    return ListedLight(SkyLight(*colors), {"environment": colors})
+    return PackedLight(SkyLight(*colors), {"environment": colors})
 
 
 def _shape(name: str, light: Light) -> Shape:

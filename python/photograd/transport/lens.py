@@ -45,7 +45,7 @@ class Shutter:
     """The camera moves from its pose to `closing` at one speed, straight on and about one axis.
 
     A picture is the mean over all moments in between (cpp/photograd/camera/camera_motion.h).
-    Shapes may move as well (motion.py); what does not, stands still.
+    Shapes may move as well (`photograd.transport.motion`); what does not, stands still.
 
     Attributes:
         closing: world_from_camera (4, 4) when the shutter closes; camera axes +X right, +Y down, +Z

@@ -11,7 +11,7 @@ from photograd_course.suggest import choose_from
 
 from photograd import bsdf
 from photograd._arrays import Arguments
-from photograd._registry import Parameter, Parameters
+from photograd._registry import ModelParameter, ModelParameters
 from photograd.bsdf import specular
 from photograd.errors import SceneError, message
 from photograd.transport.shape_checks import check_range
@@ -20,7 +20,7 @@ from photograd.types import Array
 
 MODELS: dict[str, bsdf.BsdfModel | specular.DeltaModel] = {**bsdf.registry(), **specular.registry()}
 """All reflectance models, rough and smooth, by name."""
-ALPHA = Parameter("alpha", 1, 0.0, 1.0, "")
+ALPHA = ModelParameter("alpha", 1, 0.0, 1.0, "")
 """What any material may have besides the parameters of its model."""
 
 
@@ -76,9 +76,11 @@ class Material:
         return ALPHA.name in self.values
 
     @property
-    def parameters(self) -> Parameters:
+    def parameters(self) -> ModelParameters:
         """Descriptions of the parameters, in the order in which the core packs them."""
-        return Parameters((*MODELS[self.model].parameters, *([ALPHA] if self.has_opacity else [])))
+        return ModelParameters(
+            (*MODELS[self.model].parameters, *([ALPHA] if self.has_opacity else []))
+        )
 
     def row(self) -> Array:
         """All parameters as one row of numbers (P,), float64."""

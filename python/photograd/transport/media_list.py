@@ -90,19 +90,19 @@ def is_closed(shape: Shape) -> bool:
     """
     if not isinstance(shape, MeshShape):  # spheres and signed distance fields have one
         return True
-    places, same = np.unique(shape.vertices, axis=0, return_inverse=True)
+    points, same = np.unique(shape.vertices, axis=0, return_inverse=True)
     faces = same.reshape(-1)[shape.faces.astype(np.int64)]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # slivers of a welded edge
     edges = np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)])
-    forth = edges[:, 0] * len(places) + edges[:, 1]
-    back = edges[:, 1] * len(places) + edges[:, 0]
+    forth = edges[:, 0] * len(points) + edges[:, 1]
+    back = edges[:, 1] * len(points) + edges[:, 0]
     if not np.array_equal(np.sort(forth), np.sort(back)):
         return False
-    corners = places[faces].astype(np.float64) - places[0]
+    corners = points[faces].astype(np.float64) - points[0]
     return float(np.linalg.det(corners).sum()) > 0
 
 
-class ListedMedia:
+class PackedMedia:
     """The media of a scene, numbered, and where they are."""
 
     def __init__(
@@ -119,7 +119,7 @@ class ListedMedia:
             for key, value in medium.start.items()
         }
 
-    def places(self, shapes: Sequence[Shape], owner: Array) -> dict[str, Any] | None:
+    def core_arguments(self, shapes: Sequence[Shape], owner: Array) -> dict[str, Any] | None:
         """Arguments of the core's `set_media`, or None for a scene of surfaces alone.
 
         `shapes` are the tracer's, `owner` (S,) says which of them each of the core's is of.

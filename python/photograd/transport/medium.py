@@ -1,7 +1,7 @@
 """What fills volumes: fog, milk, colored glass. Absorption, scattering, and where they vary.
 
-The mathematics is in cpp/photograd/medium/medium.h, render/path/free_path.h
-(sampling) and adjoint.h (what a path carries, and its derivatives).
+The mathematics is in cpp/photograd/medium/medium.h, cpp/photograd/render/path/free_path.h
+(sampling) and cpp/photograd/render/path/adjoint.h (what a path carries, and its derivatives).
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ BALLS = {
 
 
 def wall_picture(size: int = 64) -> Array:
-    """(size, size, 3) float32 albedo in 0.15..0.85: other waves in each channel, row 0 on top."""
+    """(size, size, 3) float32 albedo in 0.15..0.85: other ripples in each channel, row 0 on top."""
     c = (np.arange(size) + 0.5) / size
     v, u = np.meshgrid(c, c, indexing="ij")
     channels = [
@@ -41,8 +41,8 @@ def wall_picture(size: int = 64) -> Array:
         + 0.25 * np.sin(2 * np.pi * (4 - k) * v * (1 + u))
         for k in range(3)
     ]
-    waves = np.stack(channels, axis=-1).astype(np.float32)
-    return (0.15 + 0.7 * waves).astype(np.float32)
+    ripples = np.stack(channels, axis=-1).astype(np.float32)
+    return (0.15 + 0.7 * ripples).astype(np.float32)
 
 
 def metal_room(size: int = 256, ball: str = "principled") -> Scene:

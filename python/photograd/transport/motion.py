@@ -20,7 +20,7 @@ from photograd.types import Array
 def moves(shape: Shape) -> bool:
     """Whether a shape is elsewhere when the shutter closes."""
     if isinstance(shape, MeshShape):
-        both = zip(shape.places or (np.eye(4),), shape.closing_places, strict=False)
+        both = zip(shape.instances or (np.eye(4),), shape.closing_instances, strict=False)
         return any(not np.array_equal(*ends) for ends in both)
     if isinstance(shape, SphereShape):
         return shape.closing is not None and not np.array_equal(shape.closing, shape.center)
@@ -53,8 +53,8 @@ def moved_on(shape: Shape, way: Array) -> Shape:
         As `MeshShape`.
     """
     if isinstance(shape, MeshShape):
-        starts = shape.places or (np.eye(4),)
-        return replace(shape, closing_places=tuple(way @ place for place in starts))
+        starts = shape.instances or (np.eye(4),)
+        return replace(shape, closing_instances=tuple(way @ instance for instance in starts))
     if not isinstance(shape, SphereShape):
         expected, remedy = "a mesh or a sphere", "leave out its motion"
         got = "a signed distance function"
@@ -73,9 +73,9 @@ def closing_arrays(
     None where no mesh, or no sphere, moves.
     """
     matrices = [
-        place[:3]
+        instance[:3]
         for mesh in meshes
-        for place in (mesh.closing_places or mesh.places or (np.eye(4),))
+        for instance in (mesh.closing_instances or mesh.instances or (np.eye(4),))
     ]
     balls = [
         [*(ball.center if ball.closing is None else ball.closing), ball.radius] for ball in spheres

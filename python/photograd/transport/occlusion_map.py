@@ -161,8 +161,8 @@ def texel_points(mesh: MeshShape, height: int, width: int) -> TexelPoints:
             f"{mesh.name}: {contested} texels show more than one place; the first is baked",
             stacklevel=3,
         )
-    place = mesh.places[0] if mesh.places else np.eye(4)
-    vertices = mesh.vertices.astype(np.float64) @ place[:3, :3].T + place[:3, 3]
+    instance = mesh.instances[0] if mesh.instances else np.eye(4)
+    vertices = mesh.vertices.astype(np.float64) @ instance[:3, :3].T + instance[:3, 3]
     corners = vertices[mesh.faces[face[covered]]]
     along, across = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     s, t = weights[covered].T[..., None]
@@ -211,10 +211,10 @@ def _mesh_named(scene: Scene, shape: str) -> MeshShape:
     if low < -_OUTSIDE or high > 1 + _OUTSIDE:
         expected, remedy = "coordinates in 0..1", "a texture that repeats cannot hold shadows"
         raise SceneError(message(_NAME, f"{shape}.uv", expected, f"{low:g} to {high:g}", remedy))
-    if len(mesh.places) > 1:
-        expected = "a mesh that stands in one place"
-        got = f"{len(mesh.places)} instances, each in shadows of its own"
-        raise SceneError(message(_NAME, f"{shape}.places", expected, got))
+    if len(mesh.instances) > 1:
+        expected = "a mesh with at most one instance"
+        got = f"{len(mesh.instances)} instances, each in shadows of its own"
+        raise SceneError(message(_NAME, f"{shape}.instances", expected, got))
     return mesh
 
 

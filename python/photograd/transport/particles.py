@@ -1,8 +1,10 @@
 """Light tracing: particles from the lights, the irradiance where they land, and photon maps.
 
-The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/path/scatter.h (what
-surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h;
-that of photon maps in render/light/photon_map.h.
+The mathematics is in cpp/photograd/scene/emit.h (how they leave),
+cpp/photograd/render/path/scatter.h (what surfaces do to them),
+cpp/photograd/render/path/tracer.h (how they travel) and
+cpp/photograd/render/light/irradiance_sensor.h; that of photon maps in
+cpp/photograd/render/light/photon_map.h.
 """
 
 from __future__ import annotations
@@ -54,7 +56,7 @@ PARTICLES = ParticleOptions()
 
 
 @dataclass(frozen=True, eq=False)
-class Receiver:
+class IrradianceSensor:
     """A rectangle of cells that counts the light through its front and lets it go on.
 
     It may lie on a surface. Seen from its front with edge_x to the right and edge_y up, row 0 is on
@@ -77,17 +79,17 @@ class Receiver:
     width: int
 
     def __post_init__(self) -> None:
-        call = Arguments("Receiver", np.float64)
+        call = Arguments("IrradianceSensor", np.float64)
         for name in ("corner", "edge_x", "edge_y"):
             object.__setattr__(self, name, np.array(call.array(name, getattr(self, name), (3,))))
         x, y = np.linalg.norm(self.edge_x), np.linalg.norm(self.edge_y)
         if not (x > 0 and y > 0) or abs(float(self.edge_x @ self.edge_y)) > 1e-6 * x * y:
             expected = "perpendicular edges of some length"
             got = f"{self.edge_x} and {self.edge_y}"
-            raise RangeError(message("Receiver", "edge_x, edge_y", expected, got))
+            raise RangeError(message("IrradianceSensor", "edge_x, edge_y", expected, got))
         if self.height < 1 or self.width < 1:
             got = f"{self.height} by {self.width}"
-            raise RangeError(message("Receiver", "height, width", "at least 1 cell", got))
+            raise RangeError(message("IrradianceSensor", "height, width", "at least 1 cell", got))
 
     @property
     def cell_area(self) -> float:
@@ -103,14 +105,14 @@ class Receiver:
 
 def trace_light(
     tracer: PathTracer,
-    receiver: Receiver,
+    sensor: IrradianceSensor,
     particles: int,
     *,
     seed: int,
     options: ParticleOptions = PARTICLES,
     sums: Accumulation | None = None,
 ) -> Accumulation:
-    """The irradiance of a receiver, by particles from all lights of the scene.
+    """The irradiance of a sensor, by particles from all lights of the scene.
 
     `mean` of what is returned is (H, W, 3) in W/m^2, linear Rec. 709, and times `cell_area` the
     watts that each cell gets; `standard_error` is right where a particle seldom comes to a cell
@@ -119,7 +121,7 @@ def trace_light(
 
     Args:
         tracer: the scene, at its present `params`.
-        receiver: what is lit.
+        sensor: what is lit.
         particles: how many leave the lights.
         seed: of all random numbers.
         options: how far particles are followed.
@@ -127,10 +129,10 @@ def trace_light(
 
     Raises:
         RangeError: particles below 1, or a scene without lights.
-        ShapeError: sums of another shape than the receiver.
+        ShapeError: sums of another shape than the sensor.
         SceneError: shapes that move.
     """
-    shape = (receiver.height, receiver.width)
+    shape = (sensor.height, sensor.width)
     total = Accumulation.empty(*shape) if sums is None else sums
     total.check_call("trace_light", shape, particles, many="particles")
     _core.trace_light(
@@ -138,7 +140,7 @@ def trace_light(
         options=options.numbers(seed),
         first=total.count,
         count=particles,
-        rectangle=receiver.rows,
+        rectangle=sensor.rows,
         irradiance=total.radiance,
         squares=total.squares,
     )

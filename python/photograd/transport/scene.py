@@ -117,7 +117,7 @@ class Scene:
                 argument = f"{shape.name}.material"
                 expected = "one of the scene's materials"
                 raise SceneError(message("Scene", argument, expected, shape.material, known))
-            _check_glow(shape, self.materials[shape.material], self.textures)
+            _check_emission_texture(shape, self.materials[shape.material], self.textures)
             if self.materials[shape.material].needs_uv and getattr(shape, "uv", None) is None:
                 expected = f"texture coordinates, which '{shape.material}' needs"
                 raise SceneError(message("Scene", f"{shape.name}.uv", expected, "none"))
@@ -140,13 +140,15 @@ def _check_textures(name: str, material: Material, textures: Mapping[str, Textur
             raise SceneError(message("Scene", argument, f"at least {last} channels", got))
 
 
-def _check_glow(shape: Shape, material: Material, textures: Mapping[str, Texture]) -> None:
+def _check_emission_texture(
+    shape: Shape, material: Material, textures: Mapping[str, Texture]
+) -> None:
     if material.has_opacity and shape.emission.any():
         expected = "a shape that shines, or a material with alpha"
         raise SceneError(message("Scene", f"{shape.name}.material", expected, "both"))
-    if not isinstance(shape, MeshShape) or shape.glow is None:
+    if not isinstance(shape, MeshShape) or shape.emission_texture is None:
         return
-    argument, use = f"{shape.name}.glow", shape.glow
+    argument, use = f"{shape.name}.emission_texture", shape.emission_texture
     if use.texture not in textures:
         known = choose_from(use.texture, textures)
         expected = "one of the scene's textures"

@@ -13,7 +13,7 @@ from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
 from photograd._arrays import Arguments
-from photograd._registry import Parameter, Parameters
+from photograd._registry import ModelParameter, ModelParameters
 from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -39,11 +39,21 @@ from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, 
 
 
 def read_scene(path: str | Path) -> Scene:
-    """The scene that a file describes.
+    """The scene that a TOML file describes; docs/scene_file.md has all that may stand there.
+
+    Args:
+        path: of the file.
 
     Raises:
         IoError: the file is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
         SceneError: what it says is no scene; names the line and the key.
+
+    Example:
+        >>> room = photograd.PathTracer(photograd.read_scene("room.toml"))
+        >>> image = room.render(spp=4, seed=0).mean  # (H, W, 3), linear radiance
+        >>> gradients = room.render_backward(np.ones_like(image), spp=4, seed=1)
+        >>> gradients["materials.wall.albedo"].shape
+        (3,)
     """
     path = Path(path)
     text = read_text("read_scene", path)
@@ -128,9 +138,9 @@ def _environment(node: Node) -> Environment:
     return node.built(lambda: Environment(*parts))
 
 
-def _check_value(model: str, parameter: Parameter, values: Mapping[str, Any]) -> None:
+def _check_value(model: str, parameter: ModelParameter, values: Mapping[str, Any]) -> None:
     named = {parameter.name: values[parameter.name]}
-    Parameters((parameter,)).pack_one(Arguments("Material", np.float64), model, named)
+    ModelParameters((parameter,)).pack_one(Arguments("Material", np.float64), model, named)
     check_range(model, parameter, named[parameter.name])
 
 
@@ -186,8 +196,8 @@ def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
     material = node.choice("material", (*materials, BOUNDARY))
     emission = node.color("emission", [0.0, 0.0, 0.0])
     shape = node.built(lambda: KINDS[kind](node, name, material, emission))
-    if isinstance(shape, MeshShape) and node.has("glow"):
-        shape = replace(shape, glow=texture_use(node, "glow"))
+    if isinstance(shape, MeshShape) and node.has("emission_texture"):
+        shape = replace(shape, emission_texture=texture_use(node, "emission_texture"))
     node.refuse_other_keys()
     return shape
 

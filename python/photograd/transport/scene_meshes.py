@@ -33,7 +33,7 @@ from photograd.types import Array
 
 
 def camera_of_file(node: Node) -> Camera:
-    """The camera that a table [camera] with a `file` names: its place and vertical field of view.
+    """The camera that a table [camera] with a `file` names: its pose and vertical field of view.
 
     Raises:
         SceneError: no such file, or no such camera in it.
@@ -54,8 +54,8 @@ def camera_of_file(node: Node) -> Camera:
     return node.built(lambda: by_name[name].camera(width, height))
 
 
-def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Light]:
-    """The lights of a model at each place (4, 4), if a table of kind "mesh" wants them.
+def lights_of(node: Node, model: ModelFile, instances: Sequence[Array]) -> list[Light]:
+    """The lights of a model at each instance (4, 4), if a table of kind "mesh" wants them.
 
     Raises:
         SceneError: a model that moves.
@@ -68,7 +68,7 @@ def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Lig
     if model.lights and node.has("closing"):
         expected, got = "no motion of a file whose lights are wanted", "one"
         raise node.wrong("closing", expected, got, "leave out its lights, or its motion")
-    return [placed_light(light, place) for place in places for light in model.lights]
+    return [placed_light(light, instance) for instance in instances for light in model.lights]
 
 
 def placed_light(light: Light, world_from_object: Array) -> Light:
@@ -158,18 +158,22 @@ def mesh_shapes(
     """
     path = node.path.parent / node.text("file")
     inner = matrix_of(node)
-    places = [matrix_of(place) for place in node.tables("places")] if node.has("places") else []
+    instances = (
+        [matrix_of(instance) for instance in node.tables("instances")]
+        if node.has("instances")
+        else []
+    )
     model = node.built(lambda: read_model(path))
     meshes = [shape for shape in model.shapes if isinstance(shape, MeshShape)]
     shapes = node.built(
-        lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
+        lambda: [_placed(mesh, name, material, emission, inner, instances) for mesh in meshes]
     )
-    lights = lights_of(node, model, [far @ inner for far in places or [np.eye(4)]])
+    lights = lights_of(node, model, [far @ inner for far in instances or [np.eye(4)]])
     imported = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
     imported.lights.extend(lights)
     if material is None:
         return shapes, imported
-    lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
+    lit = {shape.emission_texture.texture for shape in shapes if shape.emission_texture is not None}
     textures = {key: texture for key, texture in imported.textures.items() if key in lit}
     return shapes, ImportedMeshes(textures=textures, lights=lights)
 
@@ -180,19 +184,19 @@ def _placed(
     material: str | None,
     emission: Any,
     inner: Array,
-    places: list[Array],
+    instances: list[Array],
 ) -> MeshShape:
     """A shape of the file, moved, with the instances of the file and of the table multiplied."""
     vertices, faces, normals, uv = shape.vertices, shape.faces, shape.normals, shape.uv
-    own = [np.asarray(inner @ place) for place in shape.places]
+    own = [np.asarray(inner @ instance) for instance in shape.instances]
     if not own:
         vertices, faces, normals, uv = moved((vertices, faces, normals, uv), inner)
-    outer = places or [np.eye(4)]
+    outer = instances or [np.eye(4)]
     both = [far @ near for far in outer for near in (own or [np.eye(4)])]
     shining = shape.emission if emission is None else np.asarray(emission, np.float64)
-    glow = shape.glow if emission is None else None
-    if glow is not None:
-        glow = replace(glow, texture=f"{name}/{glow.texture}")
+    emission_texture = shape.emission_texture if emission is None else None
+    if emission_texture is not None:
+        emission_texture = replace(emission_texture, texture=f"{name}/{emission_texture.texture}")
     return replace(
         shape,
         name=f"{name}/{shape.name}",
@@ -202,8 +206,8 @@ def _placed(
         uv=uv,
         material=material or f"{name}/{shape.material}",
         emission=shining,
-        places=tuple(both) if own or places else (),
-        glow=glow,
+        instances=tuple(both) if own or instances else (),
+        emission_texture=emission_texture,
         interior=f"{name}/{shape.interior}" if material is None and shape.interior else None,
     )
 

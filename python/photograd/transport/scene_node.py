@@ -76,27 +76,27 @@ class Node:
     """A table and the keys of it that have been asked for."""
 
     def __init__(
-        self, path: Path, data: Mapping[str, Any], place: KeyPath, lines: Mapping[KeyPath, int]
+        self, path: Path, data: Mapping[str, Any], keys: KeyPath, lines: Mapping[KeyPath, int]
     ) -> None:
-        """A table at `place` in the file at `path`; `lines` are those of `key_lines`."""
-        self.path, self.data, self.place, self._lines = path, data, place, lines
+        """A table at `keys` in the file at `path`; `lines` are those of `key_lines`."""
+        self.path, self.data, self.keys, self._lines = path, data, keys, lines
         self._asked: set[str] = set()
 
     def line(self, key: str | None = None) -> int:
         """Where a key stands, or the nearest table around it."""
-        place: KeyPath = self.place if key is None else (*self.place, key)
-        while place:
-            for found in (place, (*place, 0)):  # an array of tables begins with its first
+        keys: KeyPath = self.keys if key is None else (*self.keys, key)
+        while keys:
+            for found in (keys, (*keys, 0)):  # an array of tables begins with its first
                 if found in self._lines:
                     return self._lines[found]
-            place = place[:-1]
+            keys = keys[:-1]
         return 1
 
     def wrong(
         self, key: str, expected: object, got: object, remedy: str | None = None
     ) -> SceneError:
         """The error that a value is not what was expected."""
-        name = ".".join(str(part) for part in (*self.place, key))
+        name = ".".join(str(part) for part in (*self.keys, key))
         where = f"line {self.line(key)}: {name}"
         return SceneError(message(f"read_scene: {self.path}", where, expected, got, remedy))
 
@@ -108,8 +108,8 @@ class Node:
             text = str(failure)
             if text.startswith(f"read_scene: {self.path}"):
                 raise
-            place = self.place if key is None else (*self.place, key)
-            name = ".".join(str(part) for part in place) or "scene"
+            keys = self.keys if key is None else (*self.keys, key)
+            name = ".".join(str(part) for part in keys) or "scene"
             where = f"line {self.line(key)}: {name}"
             raise SceneError(f"read_scene: {self.path}: {where}: {text}") from failure
 
@@ -133,7 +133,7 @@ class Node:
         found = self.value(key)
         if not isinstance(found, dict):
             raise self.wrong(key, "a table", type(found).__name__)
-        return Node(self.path, found, (*self.place, key), self._lines)
+        return Node(self.path, found, (*self.keys, key), self._lines)
 
     def tables(self, key: str) -> list[Node]:
         """The tables of an array [[key]]."""
@@ -141,7 +141,7 @@ class Node:
         if not isinstance(found, list) or not all(isinstance(entry, dict) for entry in found):
             raise self.wrong(key, f"tables [[{key}]]", type(found).__name__)
         return [
-            Node(self.path, entry, (*self.place, key, i), self._lines)
+            Node(self.path, entry, (*self.keys, key, i), self._lines)
             for i, entry in enumerate(found)
         ]
 

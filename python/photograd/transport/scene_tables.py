@@ -47,14 +47,14 @@ def _registered(name: str) -> Callable[[Node], RegisteredLight]:
             if parameter.name in ANGLES:
                 values[parameter.name] = ANGLES[parameter.name](_angle(node))
             elif parameter.name not in values:
-                read_one = node.number if parameter.size == 1 else _place(node)
+                read_one = node.number if parameter.size == 1 else _point(node)
                 values[parameter.name] = read_one(parameter.name)
         return light(**values)
 
     return read
 
 
-def _place(node: Node) -> Callable[[str], object]:
+def _point(node: Node) -> Callable[[str], object]:
     return lambda key: node.numbers(key, 3)
 
 

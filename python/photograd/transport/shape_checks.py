@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
-from photograd._registry import SPECULAR, Parameter
+from photograd._registry import SPECULAR, ModelParameter
 from photograd.errors import RangeError, ShapeError, message
 from photograd.geometry.mesh import drop_degenerate
 from photograd.types import Array
@@ -18,42 +18,44 @@ FLAT = 1e-9
 """A mesh whose volume has shrunk to less than this part is flat, as far as rounding can tell."""
 
 
-def checked_place(name: str, matrix: Any) -> Array:
+def checked_instance(name: str, matrix: Any) -> Array:
     """World_from_object (4, 4) float64 of an instance of the shape `name`.
 
     Raises:
         ShapeError: another shape.
         RangeError: numbers that are not finite, a determinant that is not positive.
     """
-    place = np.array(Arguments("MeshShape", np.float64).array(f"{name}.places", matrix, (4, 4)))
-    volume = float(np.linalg.det(place[:3, :3]))
+    instance = np.array(
+        Arguments("MeshShape", np.float64).array(f"{name}.instances", matrix, (4, 4))
+    )
+    volume = float(np.linalg.det(instance[:3, :3]))
     if not volume > 0:
         expected = "a positive determinant"
-        raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
-    return place
+        raise RangeError(message("MeshShape", f"{name}.instances", expected, volume))
+    return instance
 
 
-def checked_closing_places(
-    name: str, places: Sequence[Array], closing: Sequence[Any]
+def checked_closing_instances(
+    name: str, instances: Sequence[Array], closing: Sequence[Any]
 ) -> tuple[Array, ...]:
     """World_from_object (4, 4) of each instance when the shutter closes.
 
     Raises:
-        ShapeError: another number of them than of places, or what `checked_place` refuses.
+        ShapeError: another number of them than of instances, or what `checked_instance` refuses.
         RangeError: a mesh that would be flat or mirrored at some moment in between.
     """
-    ends = tuple(checked_place(name, matrix) for matrix in closing)
-    starts = list(places) or [np.eye(4)]
+    ends = tuple(checked_instance(name, matrix) for matrix in closing)
+    starts = list(instances) or [np.eye(4)]
     if ends and len(ends) != len(starts):
-        expected = f"{len(starts)}, one for each place"
-        raise ShapeError(message("MeshShape", f"{name}.closing_places", expected, len(ends)))
+        expected = f"{len(starts)}, one for each instance"
+        raise ShapeError(message("MeshShape", f"{name}.closing_instances", expected, len(ends)))
     for start, end in zip(starts, ends, strict=False):
         least = _least_volume(start[:3, :3], end[:3, :3])
         if not least > FLAT:
             expected = "a positive determinant at every moment"
             remedy = "turn by less, points move straight on"
             raise RangeError(
-                message("MeshShape", f"{name}.closing_places", expected, least, remedy)
+                message("MeshShape", f"{name}.closing_instances", expected, least, remedy)
             )
     return ends
 
@@ -96,7 +98,7 @@ def checked_color(function: str, argument: str, value: Any) -> Array:
     return np.array(Arguments(function, np.float64).array(argument, value, (3,), low=0.0))
 
 
-def check_range(model: str, parameter: Parameter, value: Any) -> None:
+def check_range(model: str, parameter: ModelParameter, value: Any) -> None:
     """Whether a material may have this value: what is a share or a roughness has two ends.
 
     Derivatives and searches may step beyond; what somebody writes down there is a mistake, and

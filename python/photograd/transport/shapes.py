@@ -16,9 +16,9 @@ from photograd.errors import RangeError, SceneError, message
 from photograd.geometry.sdf import Body
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.shape_checks import (
-    checked_closing_places,
+    checked_closing_instances,
     checked_color,
-    checked_place,
+    checked_instance,
     usable_triangles,
 )
 from photograd.transport.texture import TextureUse
@@ -40,18 +40,19 @@ class MeshShape:
         emission: (3,) radiance of the front; 0 for all that does not shine.
         normals: (V, 3) shading normals of any length, or None for flat triangles.
         uv: (V, 2) texture coordinates, v downwards, or None.
-        places: world_from_object, (4, 4) each, of instances of this mesh; none places it once,
-            where it is. All shine and reflect alike, and are kept in memory once.
-        glow: the texture that scales `emission`, three channels of it, or None.
+        instances: world_from_object, (4, 4) each, of instances of this mesh; without any, it
+            stands once, where its vertices are. All shine and reflect alike, and are kept in
+            memory once.
+        emission_texture: the texture that scales `emission`, three channels of it, or None.
         interior: name of the medium that fills the mesh, which has to be closed, or
             `medium.VACUUM`. None: nothing in glass, and whatever is around in other surfaces.
-        closing_places: world_from_object of each of `places` (of the mesh itself, where there are
-            none) when the shutter closes: in between, each point moves straight on. None of them:
-            it stands still.
+        closing_instances: world_from_object of each of `instances` (of the mesh itself, where there
+            are none) when the shutter closes: in between, each point moves straight on. None of
+            them: it stands still.
 
     Raises:
         DtypeError, ShapeError: arrays of other types or shapes.
-        RangeError: vertex numbers out of range, negative emission, or a place that mirrors or
+        RangeError: vertex numbers out of range, negative emission, or an instance that mirrors or
             flattens.
         SceneError: no triangle is left; for a shape that shines, a light without area.
     """
@@ -63,10 +64,10 @@ class MeshShape:
     emission: Array = field(default_factory=lambda: np.zeros(3))
     normals: Array | None = None
     uv: Array | None = None
-    places: tuple[Array, ...] = ()
-    glow: TextureUse | None = None
+    instances: tuple[Array, ...] = ()
+    emission_texture: TextureUse | None = None
     interior: str | None = None
-    closing_places: tuple[Array, ...] = ()
+    closing_instances: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
         call = Arguments("MeshShape", np.float32)
@@ -94,18 +95,20 @@ class MeshShape:
                     f"{name}.{key}", getattr(self, key), ("V", columns), floating=True
                 )
                 object.__setattr__(self, key, np.array(rows))
-        object.__setattr__(self, "places", tuple(checked_place(self.name, m) for m in self.places))
-        closing = checked_closing_places(self.name, self.places, self.closing_places)
-        object.__setattr__(self, "closing_places", closing)
+        object.__setattr__(
+            self, "instances", tuple(checked_instance(self.name, m) for m in self.instances)
+        )
+        closing = checked_closing_instances(self.name, self.instances, self.closing_instances)
+        object.__setattr__(self, "closing_instances", closing)
 
     @property
     def box(self) -> Array:
         """(2, 3) lower and upper corner of all instances at all times, meters."""
         corners = self.vertices[self.faces.reshape(-1)].astype(np.float64)
-        if not self.places and not self.closing_places:
+        if not self.instances and not self.closing_instances:
             return np.array([corners.min(axis=0), corners.max(axis=0)])
         ends = np.array([corners.min(axis=0), corners.max(axis=0)])
-        matrices = (*(self.places or (np.eye(4),)), *self.closing_places)
+        matrices = (*(self.instances or (np.eye(4),)), *self.closing_instances)
         eight = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
         world = np.concatenate([eight @ m[:3, :3].T + m[:3, 3] for m in matrices])
         return np.array([world.min(axis=0), world.max(axis=0)])

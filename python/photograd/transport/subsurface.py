@@ -14,7 +14,7 @@ distance r from it. Their integral over the plane is the part of the light that 
 Arguments are numbers or arrays that broadcast against one another; the result is of their common
 shape, float64. `foo_backward` takes dL/dfoo of that shape and returns dL/dargument for each
 argument of `foo`, in its shape. The mathematics is in cpp/photograd/ops/dipole.h and
-normalized_diffusion.h.
+cpp/photograd/ops/normalized_diffusion.h.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Path tracing of a scene, and the derivatives of its picture by everything that is a number.
 
-The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and adjoint.h
-(what they carry, and its derivatives).
+The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and
+cpp/photograd/render/path/adjoint.h (what they carry, and its derivatives).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
+from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
@@ -23,12 +24,12 @@ from photograd.transport.core_arrays import (
     glows_of,
     instances_of,
     light_shapes,
-    listed_lights,
     mean_emission,
+    packed_lights,
     textures_of,
 )
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
-from photograd.transport.media_list import ListedMedia
+from photograd.transport.media_list import PackedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
 from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
@@ -54,6 +55,12 @@ class PathTracer:
             where a light has become much stronger. Places and directions of lights are fixed;
             "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
         incomplete: {name: what is missing} of those params whose derivative is not handed out.
+
+    Example:
+        >>> room = photograd.PathTracer(photograd.builtin_scene("cornell-box", 8))
+        >>> image = room.render(spp=4, seed=0).mean
+        >>> room.render_backward(2 * image, spp=4, seed=1)["materials.red.albedo"].shape
+        (3,)
     """
 
     def __init__(
@@ -61,20 +68,25 @@ class PathTracer:
     ) -> None:
         """Build the hierarchy.
 
-        With `allow_incomplete`, incomplete derivatives are handed out: the part with paths fixed.
+        Args:
+            scene: from `read_scene`, `read_model` or `builtin_scene`.
+            dtype: of the parameters and of the computation, float32 or float64.
+            allow_incomplete: hand out incomplete derivatives, too: the part with paths fixed.
 
         Raises:
-            DtypeError: dtype is neither float32 nor float64.
+            DtypeError: no `Scene`, or dtype is neither float32 nor float64.
             SceneError: geometry that cannot be traced, or a light without area.
         """
+        remedy = "read_scene reads a file; default_scene makes one of what read_model reads"
+        require_instance("PathTracer", "scene", scene, Scene, remedy)
         self.dtype = np.dtype(dtype)
         if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
             expected = "float32 or float64"
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
-        self._lights = listed_lights(scene)
-        self._media = ListedMedia(scene.media, scene.materials, scene.world)
+        self._lights = packed_lights(scene)
+        self._media = PackedMedia(scene.media, scene.materials, scene.world)
         names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
         # nothing, by a material that is no parameter, and boundaries have none.
@@ -109,9 +121,9 @@ class PathTracer:
         )
         glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
         self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
-        places = self._media.places(self._shapes, self._owner)
-        if places is not None:
-            self._geometry.set_media(**places)
+        media = self._media.core_arguments(self._shapes, self._owner)
+        if media is not None:
+            self._geometry.set_media(**media)
         marked = [m.model + "+alpha" * m.has_opacity for m in scene.materials.values()]
         self._models = [*marked, "lambert"]
 
@@ -210,8 +222,8 @@ class PathTracer:
         differences at one seed agree if `add_samples` is given the unperturbed parameters as
         `sampling_params`. To fit, take another seed: the noise of `d_image` is then independent of
         this estimate's, and their product is unbiased. Geometry is held fixed: edges of shadows
-        and silhouettes. What that leaves incomplete (`incomplete.py`) is absent from the
-        result, and asking for it raises.
+        and silhouettes. What that leaves incomplete (`incomplete`) is absent from the result, and
+        asking for it raises.
 
         Args:
             d_image: dL/dimage (H, W, 3).
@@ -220,7 +232,7 @@ class PathTracer:
             options: of the path tracer.
             camera: None takes the scene's.
             spread: "uniform" gives each pixel as many paths, "cotangent" more where the loss
-                looks (accumulation.py); then `seed` must not be that of the picture.
+                looks; then `seed` must not be that of the picture.
 
         Raises:
             ShapeError: d_image of another shape than the picture.

@@ -27,7 +27,7 @@ from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks import load_check_modules
 from photograd_course.assignment.load import load_beside, load_figure_script
 from photograd_course.assignment.manifest import read_manifest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
 from photograd_course.build.rules import reading_findings
@@ -179,7 +179,7 @@ class AssignmentTests:
         return bundle_of(self.folder)
 
     def test_the_rules_that_read_find_nothing(self) -> None:
-        assert [str(each) for each in reading_findings(dossier_of(self.folder))] == []
+        assert [str(each) for each in reading_findings(build_of(self.folder))] == []
 
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle

@@ -13,13 +13,13 @@ from typing import Any
 
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.manifest import Limits
-from photograd_course.grade.disclosure import for_student
-from photograd_course.grade.intake import take
-from photograd_course.grade.one import Case, grade_one
-from photograd_course.grade.report import Report
-from photograd_course.grade.report_gradescope import as_results
-from photograd_course.grade.report_html import render_page
 from photograd_course.grading.remote import Connection
+from photograd_course.submissions.disclosure import for_student
+from photograd_course.submissions.intake import take
+from photograd_course.submissions.one import Case, grade_one
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.report_gradescope import as_results
+from photograd_course.submissions.report_html import render_page
 from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.launch import open_worker
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from photograd_course.grade.report import Report
+from photograd_course.submissions.report import Report
 
 from course.attacks import traces
 from course.attacks.attack import ASSIGNMENT, MODULE, Attack, read_attacks

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from photograd_course.grade.similarity import similar_pairs
+from photograd_course.submissions.similarity import similar_pairs
 
 from course.attacks.attack import ASSIGNMENT, MODULE, Attack, read_attacks
 from course.attacks.suite import Results, run_suite, strongest

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from photograd_course.build.course_files import dossier_of
-from photograd_course.build.dossier import Dossier
+from photograd_course.build.assignment_build import AssignmentBuild
+from photograd_course.build.course_files import build_of
 from photograd_course.build.rules import READING, RUNNING, findings
 
 from support.tree import ROOT
@@ -35,14 +35,14 @@ class Broken:
         (self.folder / path).write_text(text, "utf-8")
 
     @property
-    def dossier(self) -> Dossier:
+    def build(self) -> AssignmentBuild:
         """A fresh one."""
-        return dossier_of(self.folder, cache=self.cache)
+        return build_of(self.folder, cache=self.cache)
 
     def says(self, rule: str) -> list[str]:
         """What one rule has to say."""
-        return list({**READING, **RUNNING}[rule](self.dossier))
+        return list({**READING, **RUNNING}[rule](self.build))
 
     def broken_rules(self) -> set[str]:
         """Names of the rules that the build would report."""
-        return {each.rule for each in findings(self.dossier)}
+        return {each.rule for each in findings(self.build)}

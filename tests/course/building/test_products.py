@@ -12,7 +12,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.gradescope_run import main as run_gradescope
 from photograd_course.build.hint_table import public_hints, read_hints
 from photograd_course.build.products import make_products, publishable
@@ -31,7 +31,7 @@ COURSE = ROOT / "python" / "photograd_course"
 
 
 def products(folder: Path, cache: Path) -> dict[str, bytes]:
-    return make_products(dossier_of(folder, secret=SECRET, cache=cache)).files()
+    return make_products(build_of(folder, secret=SECRET, cache=cache)).files()
 
 
 @pytest.fixture(scope="module")
@@ -65,10 +65,10 @@ def test_the_sealed_bundle_knows_mistakes_in_hidden_checks(made: dict[str, bytes
 
 
 def test_public_hints_tell_nothing_without_the_wrong_answer(scaffold: Path, cache: Path) -> None:
-    dossier = dossier_of(scaffold, cache=cache)
-    table = public_hints(dossier)
-    assert sorted(table.values()) == sorted(mutant.diagnosis for mutant in dossier.mutants)
-    outcome = dossier.mutant_verdicts["squared"].outcomes[0]
+    build = build_of(scaffold, cache=cache)
+    table = public_hints(build)
+    assert sorted(table.values()) == sorted(mutant.diagnosis for mutant in build.mutants)
+    outcome = build.mutant_verdicts["squared"].outcomes[0]
     key = hint_key(b"public".hex(), "17.1.known", outcome["details"]["fingerprint"])
     assert table[key].startswith("Your result is the square")
 
@@ -76,7 +76,7 @@ def test_public_hints_tell_nothing_without_the_wrong_answer(scaffold: Path, cach
 @pytest.mark.parametrize("name", ["00_setup"])
 def test_committed_hints_are_those_of_today(name: str, cache: Path) -> None:
     folder = ROOT / "assignments" / name
-    assert read_hints(folder) == public_hints(dossier_of(folder, cache=cache)) != {}
+    assert read_hints(folder) == public_hints(build_of(folder, cache=cache)) != {}
 
 
 def test_the_publishable_tree_holds_no_answer(

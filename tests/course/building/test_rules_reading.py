@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.leak_words import says_something, shingles_of
 from photograd_course.build.rules import READING
 
@@ -15,7 +15,7 @@ from .support import TOY, Broken
 @pytest.mark.parametrize("rule", list(READING))
 def test_the_scaffold_and_the_toy_keep_the_rule(rule: str, scaffold: Path) -> None:
     for folder in (scaffold, TOY):
-        assert list(READING[rule](dossier_of(folder))) == []
+        assert list(READING[rule](build_of(folder))) == []
 
 
 def test_markers(broken: Broken) -> None:

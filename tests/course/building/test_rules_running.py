@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from photograd_course.build.course_files import dossier_of
+from photograd_course.build.course_files import build_of
 from photograd_course.build.evidence import evidence
 from photograd_course.build.matrix import cells, kills
 from photograd_course.build.rules import findings, seed_findings
@@ -17,8 +17,8 @@ from .support import SECRET, Broken
 
 
 def test_the_scaffold_keeps_every_rule_for_any_secret(scaffold: Path, cache: Path) -> None:
-    assert findings(dossier_of(scaffold, cache=cache)) == []
-    assert seed_findings(dossier_of(scaffold, secret=SECRET, cache=cache)) == []
+    assert findings(build_of(scaffold, cache=cache)) == []
+    assert seed_findings(build_of(scaffold, secret=SECRET, cache=cache)) == []
 
 
 def test_solution(broken: Broken) -> None:
@@ -57,7 +57,7 @@ def test_mutants(broken: Broken) -> None:
 def test_mutants_that_no_longer_apply(broken: Broken) -> None:
     broken.change("light.py", "2.0 * x", "x * 2.0")
     assert any(
-        "'return 2.0 * x' once in the solution, got 0" in str(f) for f in findings(broken.dossier)
+        "'return 2.0 * x' once in the solution, got 0" in str(f) for f in findings(broken.build)
     )
 
 
@@ -73,16 +73,16 @@ def test_mutants_that_no_longer_apply(broken: Broken) -> None:
 def test_rows_of_another_form(broken: Broken, row: str, what: str) -> None:
     path = broken.folder / "mutants.toml"
     path.write_text(f"{path.read_text('utf-8')}{row}\n", "utf-8")
-    assert what in str(findings(broken.dossier)[0])
+    assert what in str(findings(broken.build)[0])
 
 
 def test_which_checks_kill_a_mutant_comes_from_the_run(broken: Broken) -> None:
-    assert kills(broken.dossier) == {
+    assert kills(broken.build) == {
         "17.1.known": ("not_doubled", "squared"),
         "17.1.random": ("not_doubled", "squared"),
     }
     broken.change("mutants.toml", "return x * x", "return np.abs(2.0 * x)")
-    assert (known := kills(broken.dossier))["17.1.known"] == ("not_doubled",)
+    assert (known := kills(broken.build))["17.1.known"] == ("not_doubled",)
     # The picture shows in another color what a single check kills.
     assert cells(["not_doubled", "squared"], known).tolist() == [[1, 1], [0, 2]]
 

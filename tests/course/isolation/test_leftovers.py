@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from photograd_course.grading import StudentFailure
-from photograd_course.worker import launch, lifelines, processes
+from photograd_course.worker import launch, processes, reapers
 from photograd_course.worker.home import WorkerHome, remove_tree
 
 from course.isolation.conftest import need
@@ -72,7 +72,7 @@ def test_a_sweep_finds_every_session(home: WorkerHome) -> None:
         for new in (True, False, True)
     ]
     assert sorted(processes.of_user(uid)) == sorted(each.pid for each in started)
-    lifelines.sweep(uid)
+    reapers.sweep(uid)
     assert processes.of_user(uid) == []
     assert [each.wait() for each in started] == [-9, -9, -9]
 

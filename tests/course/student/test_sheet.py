@@ -9,11 +9,11 @@ import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.questions import Question
 from photograd_course.errors import IoError
-from photograd_course.grade.answers import read_answers
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.predictions import prediction_letters, write_lock
 from photograd_course.student.session import write_answers
 from photograd_course.student.sheet import notes_before_submission, question_sheet, remember_shown
+from photograd_course.submissions.answers import read_answers
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
 CODE = "def weighted_sum(w, x):\n    total = 0.0\n    return total  # the end\n"

@@ -1,30 +1,31 @@
-"""Recovery of what a path traced scene is made of, from pictures of it, by gradient descent.
+"""Inverse rendering: parameters of a path traced scene from pictures of it, by gradient descent.
 
-`recover` is the whole of it; `Recovery` is the loop behind it, a step at a time. What may be
-unknown is `parameters.py`, what is made small is `loss.py`.
+`recover` is the whole of it; `InverseRendering` is the loop behind it, a step at a time. The
+parameters that may be found are in `photograd.transport.inverse.parameters`, the loss is
+`dual_buffer_loss`.
 """
 
 from __future__ import annotations
 
-from photograd.transport.inverse.job import Recovery
+from photograd.transport.inverse.job import InverseRendering
 from photograd.transport.inverse.loss import (
     Target,
-    cross_loss,
-    cross_loss_backward,
+    dual_buffer_loss,
+    dual_buffer_loss_backward,
     loss_and_gradients,
 )
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
-from photograd.transport.inverse.parameters import Unknown, scene_with
+from photograd.transport.inverse.parameters import Parameter, scene_with
 from photograd.transport.inverse.whole import recover
 
 __all__ = [
-    "Recovery",
+    "InverseRendering",
+    "Parameter",
     "RecoveryOptions",
     "RecoveryResult",
     "Target",
-    "Unknown",
-    "cross_loss",
-    "cross_loss_backward",
+    "dual_buffer_loss",
+    "dual_buffer_loss_backward",
     "loss_and_gradients",
     "recover",
     "scene_with",

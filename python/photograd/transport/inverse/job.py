@@ -35,13 +35,13 @@ from photograd._descend import Progress, descend
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
-from photograd.transport.inverse.parameters import Unknown, is_light, scene_with
+from photograd.transport.inverse.parameters import Parameter, is_light, scene_with
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
-FEW = 16  # numbers of an unknown whose curves are kept one by one
+FEW = 16  # numbers of a parameter whose curves are kept one by one
 MEMORY = 0.9
 """Adam's beta_2. A color that walks from 0.5 to 0.05 loses a factor of 200 in its slope with
 respect to x; with 0.999 the first slopes would be remembered, and steps be short, long
@@ -49,13 +49,13 @@ after the end."""
 SMOOTH = 10  # steps over which the shown loss is averaged
 
 
-class Recovery:
-    """A recovery in progress.
+class InverseRendering:
+    """Inverse rendering in progress.
 
     Attributes:
         scene: as it was given.
         targets: the pictures, each with a camera.
-        unknowns: what is looked for, by name.
+        parameters: what is looked for, by name.
         options: how.
         x: {name: numbers before the activation}, float64.
         step_number: steps done.
@@ -67,31 +67,31 @@ class Recovery:
         self,
         scene: Scene,
         targets: Any,
-        unknowns: Sequence[Unknown | str],
+        parameters: Sequence[Parameter | str],
         options: RecoveryOptions | None = None,
     ) -> None:
-        """Check everything, and begin at the unknowns' starts.
+        """Check everything, and begin at the parameters' starts.
 
         Raises:
-            RangeError: no unknown, one twice, one that the scene does not have or whose derivative
-                is incomplete, or out of bounds.
+            RangeError: no parameter, one twice, one that the scene does not have or whose
+                derivative is incomplete, or out of bounds.
             ShapeError: no picture, or one that its camera does not take.
         """
         self.scene = scene
         self.options = options or RecoveryOptions()
         self.targets = checked_targets(targets, scene)
         self._weights = [loss_weights(target, self.options.loss) for target in self.targets]
-        given = [Unknown(each) if isinstance(each, str) else each for each in unknowns]
-        self.unknowns = {each.name: each for each in given}
-        if not given or len(self.unknowns) < len(given):
+        given = [Parameter(each) if isinstance(each, str) else each for each in parameters]
+        self.parameters = {each.name: each for each in given}
+        if not given or len(self.parameters) < len(given):
             got = "none" if not given else "one twice"
-            raise RangeError(message("recover", "unknowns", "names of parameters", got))
+            raise RangeError(message("recover", "parameters", "names of parameters", got))
         if self.options.views > len(self.targets):
             expected = f"at most the {len(self.targets)} pictures"
             raise RangeError(message("recover", "views", expected, self.options.views))
         tracer = PathTracer(scene)
-        starts = {name: each.start_in(tracer) for name, each in self.unknowns.items()}
-        self._activations = {n: each.activation_in(scene) for n, each in self.unknowns.items()}
+        starts = {name: each.start_in(tracer) for name, each in self.parameters.items()}
+        self._activations = {n: each.activation_in(scene) for n, each in self.parameters.items()}
         self.x = {n: self._activations[n].inverse(value) for n, value in starts.items()}
         self.optimizer = Adam(beta_2=MEMORY)
         self._rate = exponential(self.options.final_rate, self.options.steps)
@@ -102,11 +102,11 @@ class Recovery:
         self._tracer = PathTracer(scene_with(scene, self._sampled))
 
     def values(self) -> dict[str, Array]:
-        """The unknowns as they are now, float64."""
+        """The parameters as they are now, float64."""
         return {name: self._activations[name].value(x) for name, x in self.x.items()}
 
     def tracer(self) -> PathTracer:
-        """A tracer with the unknowns as they are now."""
+        """A tracer with the parameters as they are now."""
         for name, value in self.values().items():
             self._tracer.params[name] = np.array(value, self._tracer.dtype, order="C")
         return self._tracer
@@ -152,13 +152,13 @@ class Recovery:
         if not (np.isfinite(loss) and finite):
             got = f"others at step {step}"
             remedy = "lower the learning rate"
-            raise Error(message("Recovery.step", "loss", "finite numbers", got, remedy))
+            raise Error(message("InverseRendering.step", "loss", "finite numbers", got, remedy))
         gradients = {
             name: np.asarray(self._activations[name].value_backward(self.x[name], d_value))
             for name, d_value in d_values.items()
         }
         rate = self.options.learning_rate * self._rate(step)
-        rates = {name: rate * each.rate for name, each in self.unknowns.items()}
+        rates = {name: rate * each.rate for name, each in self.parameters.items()}
         self.optimizer.step(self.x, gradients, rates)
         self.history.append((step, loss, rate))
         for name, value in self.values().items():
@@ -218,7 +218,7 @@ class Recovery:
 
         Raises:
             IoError: a missing or damaged checkpoint.
-            RangeError: one of another scene, other pictures, unknowns or options.
+            RangeError: one of another scene, other pictures, parameters or options.
         """
         self._sampled = load_state(folder, self)
         self._tracer = PathTracer(scene_with(self.scene, self._sampled))
@@ -231,9 +231,9 @@ class Recovery:
 
     def seeds(self, step: int, view: int) -> tuple[int, int]:
         """64 random bits for each half: they share nothing, with each other or other steps."""
-        halves, words = np.arange(2)[:, None], np.arange(2)[None, :]
+        buffer, words = np.arange(2)[:, None], np.arange(2)[None, :]
         drawn = random_words(
-            self.options.seed, step=step, pixel=view, sample=halves, dimension=words
+            self.options.seed, step=step, pixel=view, sample=buffer, dimension=words
         ).astype(np.uint64)
         one, two = (int(low) | int(high) << 32 for low, high in drawn)
         return one, two
@@ -252,7 +252,7 @@ def _summary(value: Array) -> Array:
 FILE_NAME = "recovery.npz"
 
 
-def save_state(folder: Path, job: Recovery, sampled: dict[str, Array]) -> None:
+def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -> None:
     """Write DIR/recovery.npz; `sampled` are the values that the tracer was built with."""
     state = {f"sampled.{name}": value for name, value in sampled.items()}
     state |= {f"curves.{name}": np.array(rows) for name, rows in job.curves.items()}
@@ -263,7 +263,7 @@ def save_state(folder: Path, job: Recovery, sampled: dict[str, Array]) -> None:
     )
 
 
-def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
+def load_state(folder: Path, job: InverseRendering) -> dict[str, Array]:
     """Bring a job to where its checkpoint ends; the values that its tracer was built with.
 
     Raises:
@@ -289,8 +289,8 @@ def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
     return sampled
 
 
-def _checked_step(saved: Checkpoint, job: Recovery) -> int:
-    """Steps done. Raises Error unless the arrays are those of a recovery of the same unknowns."""
+def _checked_step(saved: Checkpoint, job: InverseRendering) -> int:
+    """Steps done. Raises Error unless the arrays are those of a recovery of the same parameters."""
     step = checked_step(saved)
     kinds, state = ("float64",), {}
     for name, x in job.x.items():
@@ -318,8 +318,8 @@ def _require_same(own: dict[str, Any], saved: dict[str, Any]) -> None:
         raise RangeError(message("recover", name, expected, got, remedy))
 
 
-def fingerprint(job: Recovery) -> dict[str, Any]:
-    """The options, and short texts that change with the scene, the pictures and the unknowns."""
+def fingerprint(job: InverseRendering) -> dict[str, Any]:
+    """The options, and short texts that change with the scene, the pictures and the parameters."""
     pictures = hashlib.sha256()
     for target in job.targets:
         camera = target.camera
@@ -328,14 +328,14 @@ def fingerprint(job: Recovery) -> dict[str, Any]:
         pictures.update(b"" if target.weight is None else target.weight.tobytes())
         pictures.update(repr((camera.fx, camera.fy, camera.cx, camera.cy)).encode())
         pictures.update(camera.world_from_camera.tobytes())
-    unknowns = hashlib.sha256()
-    for each in job.unknowns.values():
+    parameters = hashlib.sha256()
+    for each in job.parameters.values():
         start = "" if each.start is None else np.asarray(each.start, np.float64).tobytes().hex()
         told = (each.name, start, each.bounds, each.activation, each.rate)
-        unknowns.update(repr(told).encode())
+        parameters.update(repr(told).encode())
     texts = {
         "scene": scene_digest(job.scene, without=("name", "camera")),  # targets have their own
         "targets": pictures.hexdigest(),
-        "unknowns": unknowns.hexdigest(),
+        "parameters": parameters.hexdigest(),
     }
     return {**{name: text[:16] for name, text in texts.items()}, "options": asdict(job.options)}

@@ -123,12 +123,12 @@ PILOT = 16
 PILOT_SEED = 0x5DEECE66D  # makes another seed of one
 
 
-def cross_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
+def dual_buffer_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
     """The mean of w (a - t) (b - t); all four are (H, W, 3). Below 0 now and then, by chance."""
     return float(np.mean(weight * (a - target) * (b - target)))
 
 
-def cross_loss_backward(
+def dual_buffer_loss_backward(
     a: Array, b: Array, target: Array, weight: Array, d_loss: float = 1.0
 ) -> tuple[Array, Array]:
     """(dL/da, dL/db), (H, W, 3) each."""
@@ -159,7 +159,7 @@ def loss_and_gradients(
         camera, options: as for `PathTracer.render`.
         names: of the parameters wanted; None for all whose derivative is whole.
         spread: "uniform" gives each pixel as many samples; "cotangent" more to those that are noisy
-            and far from the target (accumulation.py), as one sample in `PILOT` finds out first.
+            and far from the target, as one sample in `PILOT` finds out first.
 
     Returns:
         The loss, and {name: dL/dparameter}, float64: the derivative of that very loss, the choice
@@ -186,7 +186,7 @@ def loss_and_gradients(
         )
         spp = max(1, spp - pilot.count // 2)
         counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
-    halves = np.zeros((2, *shape))
+    buffers = np.zeros((2, *shape))
     found = tracer.add_up(
         "loss_and_gradients",
         _core.dual_buffer_backward,
@@ -195,12 +195,12 @@ def loss_and_gradients(
         other_seed=seeds[1],
         spp=spp,
         counts=counts,
-        pictures=halves,
+        pictures=buffers,
         target=target,
         weight=weight / weight.size,
     )
-    Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
+    Accumulation(buffers.sum(axis=0), buffers.sum(axis=0), 2).check_finite("loss_and_gradients")
     wide = {name: d.astype(np.float64) for name, d in found.items()}
     names = wide if wanted is None else wanted
     gradients = WholeGradients("loss_and_gradients", wide, names, tracer.incomplete)
-    return cross_loss(halves[0], halves[1], target, weight), gradients
+    return dual_buffer_loss(buffers[0], buffers[1], target, weight), gradients

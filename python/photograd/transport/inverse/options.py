@@ -18,11 +18,11 @@ LOSSES: tuple[Loss, ...] = get_args(Loss)
 
 @dataclass(frozen=True)
 class RecoveryOptions:
-    """How unknowns are looked for.
+    """How parameters are found.
 
     Attributes:
         steps: of gradient descent.
-        spp: samples a pixel of each of the two halves of a step (see `cross_loss`); powers of two
+        spp: samples a pixel of each of the two halves of a step (`dual_buffer_loss`); powers of two
             are spread most evenly.
         learning_rate: of Adam, in units of logits and logarithms: about what a step changes at
             first.
@@ -31,7 +31,7 @@ class RecoveryOptions:
         loss: "squared" difference of radiance, or "relative": divided by the target plus its
             channel's mean.
         views: pictures that a step looks at, drawn at random; 0 looks at all.
-        resample_every: steps after which the tracer is built again where a light is unknown, so
+        resample_every: steps after which the tracer is built again where a light is a parameter, so
             that lights and texels are asked as often as their brightness now warrants.
         path: options of the path tracer.
         seed: of all random numbers, 0 to 2^64 - 1.
@@ -74,7 +74,7 @@ class RecoveryResult:
     """What was found.
 
     Attributes:
-        params: {name: value} of the unknowns, float64.
+        params: {name: value} of what was found, float64.
         scene: with these values.
         history: (steps, 3): step, loss, learning rate. The loss is that of two half pictures: right
             on average, and below 0 now and then near the end.

@@ -120,11 +120,11 @@ def _light_with(light: Light, parameter: str, value: Any) -> Light:
     return changed
 
 
-# What a recovery may change: a parameter of the tracer, between bounds.
+# What inverse rendering may change: a parameter of the tracer, between bounds.
 
 
 @dataclass(frozen=True, eq=False)
-class Unknown:
+class Parameter:
     """A parameter that is to be found.
 
     Attributes:
@@ -151,16 +151,16 @@ class Unknown:
     def __post_init__(self) -> None:
         require_choices(self)
         if not (math.isfinite(self.rate) and self.rate > 0):
-            raise RangeError(message("Unknown", f"{self.name}.rate", "above 0", self.rate))
+            raise RangeError(message("Parameter", f"{self.name}.rate", "above 0", self.rate))
         if self.bounds is None:
             return
         lo, hi = self.bounds
         if not (math.isfinite(lo) and lo < hi):
-            raise RangeError(message("Unknown", f"{self.name}.bounds", "lo < hi", self.bounds))
+            raise RangeError(message("Parameter", f"{self.name}.bounds", "lo < hi", self.bounds))
         expected = "log" if math.isinf(hi) else "logit"
         if self.activation not in (None, expected):
             got = f"{self.activation} for bounds {self.bounds}"
-            raise RangeError(message("Unknown", f"{self.name}.activation", expected, got))
+            raise RangeError(message("Parameter", f"{self.name}.activation", expected, got))
 
     def activation_in(self, scene: Scene) -> Activation:
         """How numbers become this parameter.
@@ -174,7 +174,7 @@ class Unknown:
             hi, kind = math.inf, "log"
         if self.activation == "logit" and kind == "log":
             got = "none"
-            raise RangeError(message("Unknown", f"{self.name}.bounds", "an upper bound", got))
+            raise RangeError(message("Parameter", f"{self.name}.bounds", "an upper bound", got))
         return Activation(kind, float(lo), float(hi))
 
     def start_in(self, tracer: PathTracer) -> Array:
@@ -188,13 +188,13 @@ class Unknown:
         if self.name not in tracer.params:
             known = choose_from(self.name, tracer.params)
             expected = "a parameter of the scene"
-            raise RangeError(message("recover", "unknowns", expected, f"'{self.name}'", known))
-        require_whole("recover", "unknowns", [self.name], tracer.incomplete)
+            raise RangeError(message("recover", "parameters", expected, f"'{self.name}'", known))
+        require_whole("recover", "parameters", [self.name], tracer.incomplete)
         own = np.asarray(tracer.params[self.name], np.float64)
         if self.start is None:
             return own.copy()
         activation = self.activation_in(tracer.scene)
-        call = Arguments("Unknown", np.float64)
+        call = Arguments("Parameter", np.float64)
         start = call.array(
             f"{self.name}.start",
             self.start,

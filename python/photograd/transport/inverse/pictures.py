@@ -25,9 +25,9 @@ def display(radiance: Array) -> Array:
 
 
 def curves_figure(result: RecoveryResult, truth: Mapping[str, Any] | None = None) -> Figure:
-    """Loss (logarithmic) on the left, values of the unknowns on the right.
+    """Loss (logarithmic) on the left, values of the parameters on the right.
 
-    A loss below zero, which noise makes now and then, leaves a gap. Large unknowns are shown by the
+    A loss below zero, which noise makes now and then, leaves a gap. Large ones are shown by the
     means of their channels. `truth` {name: value} adds thin horizontal lines.
     """
     with style.house_style():

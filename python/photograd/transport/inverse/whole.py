@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from photograd._descend import progress_bar, run_folder
-from photograd.transport.inverse.job import FILE_NAME, Recovery
+from photograd.transport.inverse.job import FILE_NAME, InverseRendering
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
-from photograd.transport.inverse.parameters import Unknown
+from photograd.transport.inverse.parameters import Parameter
 from photograd.transport.scene import Scene
 
 
 def recover(
     scene: Scene,
     targets: Any,
-    unknowns: Sequence[Unknown | str],
+    parameters: Sequence[Parameter | str],
     *,
     options: RecoveryOptions | None = None,
     folder: Path | None = None,
@@ -32,18 +32,18 @@ def recover(
     and the search walks to a place where the picture is darker or smoother than the target, not to
     the target. Each step therefore draws two half pictures with independent seeds, and each half's
     derivative is taken of the other half's difference: the gradient is right on average, at any
-    number of samples (`cross_loss`). Inverse path tracing: [Azinovic2019]; the adjoint of a path:
-    [Vicini2021].
+    number of samples (`dual_buffer_loss`). Inverse path tracing: [Azinovic2019]; the adjoint of a
+    path: [Vicini2021].
 
-    Geometry is not among the unknowns: edges of shadows and silhouettes have no derivative here.
-    Neither is what has an incomplete one (`incomplete.py`): a search would walk away from the
-    truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
+    Geometry cannot be found: edges of shadows and silhouettes have no derivative here. Neither can
+    parameters whose derivative is incomplete (`PathTracer.incomplete`): a search would walk away
+    from the truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
 
     Args:
-        scene: with shapes, cameras and all that is known; for the unknowns a first guess.
+        scene: all that is known; `parameters` begin at its values unless they have a start.
         targets: (H, W, 3) linear radiance as the scene's camera sees it, or `Target`s with cameras
             of their own, or several of either.
-        unknowns: names among `PathTracer.params`, or `Unknown`s with a start, bounds and rate.
+        parameters: names among `PathTracer.params`, or `Parameter`s with a start, bounds and rate.
         options: steps, samples, rates, seed.
         folder: for the checkpoint, DIR/recovery.npz, written every 30 s and at the end.
         resume: go on from the checkpoint in `folder`, to the same bits as without interruption.
@@ -53,15 +53,26 @@ def recover(
         Values, the scene with them, losses and curves.
 
     Raises:
-        RangeError: unknowns that the scene does not have or whose derivative is incomplete, starts
-            out of bounds, a checkpoint of
-            another recovery, a folder that holds one already without `resume`.
+        RangeError: parameters that the scene does not have or whose derivative is incomplete,
+            starts out of bounds, a checkpoint of another recovery, a folder that holds one already
+            without `resume`.
         ShapeError: pictures that their cameras do not take.
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: a loss or derivative that is not finite.
+
+    Example:
+        >>> room = photograd.builtin_scene("cornell-box", 8)
+        >>> truth = photograd.PathTracer(room)
+        >>> truth.params["materials.red.albedo"][:] = 0.5
+        >>> photograph = truth.render(spp=64, seed=0).mean
+        >>> options = photograd.RecoveryOptions(steps=10, spp=2)
+        >>> found = photograd.recover(room, photograph, ["materials.red.albedo"], options=options)
+        >>> step, loss, rate = found.history.T
+        >>> found.params["materials.red.albedo"].shape
+        (3,)
     """
     with run_folder("recover", folder, FILE_NAME, resume=resume):
-        job = Recovery(scene, targets, unknowns, options)
+        job = InverseRendering(scene, targets, parameters, options)
         if resume and folder is not None:
             job.load(folder)
         with progress_bar("recover", job, shown=bar) as on_step:

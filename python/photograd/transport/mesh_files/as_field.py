@@ -40,18 +40,18 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
             expected, got = "texture coordinates in [0, 1]", f"others of '{shape.name}'"
             remedy = "unwrap the mesh, so that no texture repeats"
             raise RangeError(message("read_textured_mesh", f"{path}", expected, got, remedy))
-        for place in shape.places or (np.eye(4),):
-            moved = shape.vertices @ place[:3, :3].T + place[:3, 3]
+        for instance in shape.instances or (np.eye(4),):
+            moved = shape.vertices @ instance[:3, :3].T + instance[:3, 3]
             parts.append((moved.astype(np.float32), shape.faces, shape.uv))
     side = math.ceil(math.sqrt(len(parts)))
     margin = MARGIN if side > 1 else 0.0
     vertices, faces, uv, count = [], [], [], 0
-    for number, (place, corners, flat) in enumerate(parts):
+    for number, (moved, corners, flat) in enumerate(parts):
         cell = np.array([number % side, number // side])
-        vertices.append(place)
+        vertices.append(moved)
         faces.append(corners.astype(np.int64) + count)
         uv.append((cell + margin + (1 - 2 * margin) * flat) / side)
-        count += len(place)
+        count += len(moved)
     mesh = Mesh(
         np.concatenate(vertices), np.concatenate(faces), np.concatenate(uv).astype(np.float32)
     )

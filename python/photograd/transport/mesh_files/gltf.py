@@ -75,7 +75,11 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
         raise SceneError(message(NAME, f"{path}", "triangles in the scene", "none"))
     used = {name: made.material for name, made in materials.items()}
     asked = {use.texture for material in used.values() for use in material.textures.values()}
-    asked |= {made.glow.texture for made in materials.values() if made.glow is not None}
+    asked |= {
+        made.emission_texture.texture
+        for made in materials.values()
+        if made.emission_texture is not None
+    }
     textures = {name: pictures.textures[name] for name in pictures.textures if name in asked}
     filled, media = filled_shapes(shapes, materials, note)
     return ModelFile(filled, used, textures, media, cameras, lights)
@@ -83,12 +87,12 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
 
 def _glowing(shape: Shape, made: FileMaterial, note: Callable[[str], None]) -> Shape:
     """The shape with the texture of its light, if it has coordinates for it."""
-    if made.glow is None or not isinstance(shape, MeshShape):
+    if made.emission_texture is None or not isinstance(shape, MeshShape):
         return shape
     if shape.uv is None:
         note(f"{shape.name}: emissiveTexture without texture coordinates, left out")
         return shape
-    return replace(shape, glow=made.glow)
+    return replace(shape, emission_texture=made.emission_texture)
 
 
 def _check_required(container: Container) -> None:

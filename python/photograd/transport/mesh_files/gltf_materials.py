@@ -39,13 +39,13 @@ from photograd.transport.texture import NormalMap, TextureUse
 class FileMaterial:
     """A material, the light of surfaces that have it, and the coordinates of its textures.
 
-    `glow` is the texture that scales the emission, or None; `interior` what fills bodies of it.
+    `emission_texture` scales the emission, or is None; `interior` is what fills bodies of it.
     """
 
     material: Material
     emission: Any
     coordinates: Coordinates
-    glow: TextureUse | None = None
+    emission_texture: TextureUse | None = None
     interior: Medium | None = None
 
 
@@ -203,12 +203,12 @@ def _with_pictures(reader: MaterialReader, material: Material, pictures: Picture
     if material.has_opacity and "alpha" not in uses and alpha >= (1 if cutoff is None else cutoff):
         del values["alpha"]  # it covers everything
         cutoff = None
-    emission, glow = _radiance(reader), None
+    emission, emission_texture = _radiance(reader), None
     if "emissiveTexture" in node and emission.any():
         info = node["emissiveTexture"]
-        name = pictures.glow(info)
+        name = pictures.emission_texture(info)
         if name is not None:
-            glow = TextureUse(name)
+            emission_texture = TextureUse(name)
             coordinates.add(info)
     if "occlusionTexture" in node:
         info = node["occlusionTexture"]
@@ -216,7 +216,9 @@ def _with_pictures(reader: MaterialReader, material: Material, pictures: Picture
         if occlusion is not None:
             coordinates.add(info)
     whole = Material(material.model, values, uses, bent, cutoff, occlusion)
-    return FileMaterial(whole, emission, coordinates.first or Coordinates(), glow, reader.interior)
+    return FileMaterial(
+        whole, emission, coordinates.first or Coordinates(), emission_texture, reader.interior
+    )
 
 
 def _radiance(reader: MaterialReader) -> Any:

@@ -111,7 +111,7 @@ def _file(model: ModelFile) -> GltfBytes:
     numbers: dict[object, int] = {}
     for shape in model.shapes:
         assert isinstance(shape, MeshShape)
-        key = shape.material, tuple(shape.emission), shape.glow, shape.interior
+        key = shape.material, tuple(shape.emission), shape.emission_texture, shape.interior
         if key not in numbers:
             numbers[key] = file.entry("materials", _material(model, shape, textures))
         attributes = {"POSITION": file.attribute(shape.vertices, bounds=True)}
@@ -125,8 +125,10 @@ def _file(model: ModelFile) -> GltfBytes:
             "material": numbers[key],
         }
         mesh = file.entry("meshes", {"name": shape.name, "primitives": [part]})
-        nodes += [{"mesh": mesh, "matrix": place.T.ravel().tolist()} for place in shape.places]
-        nodes += [] if shape.places else [{"mesh": mesh}]
+        nodes += [
+            {"mesh": mesh, "matrix": instance.T.ravel().tolist()} for instance in shape.instances
+        ]
+        nodes += [] if shape.instances else [{"mesh": mesh}]
     nodes += _camera_and_light_nodes(file, model)
     file.root |= {"nodes": nodes, "scenes": [{"nodes": list(range(len(nodes)))}], "scene": 0}
     used = {name for entry in file.root["materials"] for name in entry.get("extensions", ())}
@@ -173,8 +175,8 @@ def _material(model: ModelFile, shape: MeshShape, textures: TextureWriter) -> di
         entry["emissiveFactor"] = (shape.emission / strength).tolist()
         if strength > 1:
             written.extensions["emissive_strength"] = {"emissiveStrength": strength}
-        if shape.glow is not None:
-            entry["emissiveTexture"] = {"index": textures.color(shape.glow)}
+        if shape.emission_texture is not None:
+            entry["emissiveTexture"] = {"index": textures.color(shape.emission_texture)}
     if shape.interior not in (None, VACUUM):
         written.extensions["volume"] |= attenuation(model.media[str(shape.interior)])
     if written.extensions:

@@ -53,11 +53,13 @@ def _of_shapes(before: ModelFile, after: ModelFile) -> Iterator[str]:
         if not isinstance(shape, MeshShape) or not isinstance(other, MeshShape):
             yield f"shape '{shape.name}': missing"
             continue
-        for name in ("vertices", "faces", "normals", "uv", "places", "emission", "material"):
+        for name in ("vertices", "faces", "normals", "uv", "instances", "emission", "material"):
             if not _same(getattr(shape, name), getattr(other, name), 0.0):
                 yield f"shape '{shape.name}': {name} changed"
-        for text in _of_use(shape.glow, other.glow, before.textures, after.textures, 3):
-            yield f"shape '{shape.name}': glow: {text}"
+        for text in _of_use(
+            shape.emission_texture, other.emission_texture, before.textures, after.textures, 3
+        ):
+            yield f"shape '{shape.name}': emission_texture: {text}"
         mine, its = (
             media.get(name or "")
             for media, name in ((before.media, shape.interior), (after.media, other.interior))

@@ -26,15 +26,15 @@ def placed_nodes(container: Container) -> list[NodeTransform]:
         return []
     nodes = root["nodes"].items()
     found: list[NodeTransform] = []
-    seen: set[int] = set()
+    visited: set[int] = set()
     waiting = [(number, np.eye(4)) for number in reversed(_roots(container, nodes))]
     while waiting:
         number, parent = waiting.pop()
         node = nodes[number]
-        if number in seen:
+        if number in visited:
             got = "a node with two parents, or its own"
             raise IoError(message(NAME, node.where, "a tree of nodes", got))
-        seen.add(number)
+        visited.add(number)
         world = parent @ _local(node)
         found.append((node, world))
         children = _references(node, "children", len(nodes)) if "children" in node else []

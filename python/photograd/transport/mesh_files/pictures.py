@@ -99,7 +99,7 @@ class Pictures:
             self.textures[name] = Texture(color, wrap, looked_up)
         return name
 
-    def glow(self, info: JsonNode) -> str | None:
+    def emission_texture(self, info: JsonNode) -> str | None:
         """As `texture`, of what shines, which paths see point by point."""
         name = self.texture(info, "srgb")
         if name is not None and self.textures[name].filter == "mip":

@@ -38,10 +38,21 @@ def read_model(path: str | Path) -> ModelFile:
     area or with corners that are not finite are dropped. Warnings (UserWarning) count what was
     dropped and name what is not supported, with where it stands in the file.
 
+    Args:
+        path: of the file: .glb, .gltf, .obj, .ply or .stl.
+
+    Returns:
+        What the file holds; `default_scene` makes a `Scene` of it.
+
     Raises:
         IoError: a missing or damaged file, another kind of file, or compressed geometry.
         RangeError: numbers in a glTF file that are not finite.
         SceneError: nothing that can be drawn.
+
+    Example:
+        >>> model = photograd.read_model("cube.obj")
+        >>> [len(shape.faces) for shape in model.shapes], model.box.shape
+        ([12], (2, 3))
     """
     path = Path(path)
     suffix = path.suffix.lower()

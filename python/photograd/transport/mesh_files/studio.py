@@ -15,8 +15,8 @@ from photograd.transport.scene import Environment, Scene
 from photograd.transport.shapes import MeshShape, rectangle
 from photograd.types import Array
 
-_TURNS, _SEEN_FROM = 12, 1  # 30 degrees from the front, +Z
-_LAMP = "studio lamp"
+_TURNS, _CAMERA = 12, 1  # 30 degrees from the front, +Z
+_LIGHT = "studio lamp"
 STUDIO = "studio"
 """In place of a camera's name."""
 
@@ -43,10 +43,10 @@ def default_scene(
         RangeError: a camera that sees too little or too much.
     """
     lights = () if camera == STUDIO else model.lights
-    seen = _chosen(model, camera)
+    chosen = _chosen(model, camera)
     shines = any(shape.emission.any() for shape in model.shapes)
-    view = _from_in_front(model, size) if seen is None else seen.fitted(size)
-    if lights or (seen is not None and shines):
+    view = _from_in_front(model, size) if chosen is None else chosen.fitted(size)
+    if lights or (chosen is not None and shines):
         return Scene(
             name,
             model.shapes,
@@ -59,8 +59,8 @@ def default_scene(
     box = model.box
     center, radius = box.mean(axis=0), 0.5 * float(np.linalg.norm(box[1] - box[0]))
     sky = Environment(np.full(3, 0.9), np.full(3, 0.6), np.full(3, 0.25))
-    materials = {**model.materials, _LAMP: Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
-    shapes = (*model.shapes, _lamp(center, radius))
+    materials = {**model.materials, _LIGHT: Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
+    shapes = (*model.shapes, _light(center, radius))
     return Scene(name, shapes, materials, view, sky, textures=model.textures, media=model.media)
 
 
@@ -78,10 +78,10 @@ def _chosen(model: ModelFile, name: str | None) -> ModelCamera | None:
 
 
 def _from_in_front(model: ModelFile, size: int) -> Camera:
-    return orbit_cameras(model.box, _TURNS, size=size, elevation=20.0)[_SEEN_FROM]
+    return orbit_cameras(model.box, _TURNS, size=size, elevation=20.0)[_CAMERA]
 
 
-def _lamp(center: Array, radius: float) -> MeshShape:
+def _light(center: Array, radius: float) -> MeshShape:
     """A square that faces the model."""
     towards = np.array([-0.45, 0.75, 0.5]) / np.linalg.norm([-0.45, 0.75, 0.5])
     right = np.cross([0.0, 1.0, 0.0], towards)
@@ -90,4 +90,4 @@ def _lamp(center: Array, radius: float) -> MeshShape:
     middle = center + 3 * radius * towards
     # Front: edge_u x edge_v = right x (-up) looks back along -towards.
     corner = middle - radius * right + radius * up
-    return rectangle(_LAMP, corner, 2 * radius * right, -2 * radius * up, _LAMP, [6.0, 5.8, 5.4])
+    return rectangle(_LIGHT, corner, 2 * radius * right, -2 * radius * up, _LIGHT, [6.0, 5.8, 5.4])

@@ -10,7 +10,8 @@ shape of the arrays alone. BLAS (`@`, dot, linalg) and sorting that is not stabl
 `norm` and kind="stable" replace them.
 
 The result has the dtype of the argument, float64 for plain numbers; NaN stays NaN. exp, expm1 and
-log have the formulas of cpp/photograd/core/exp.h and log.h; exp and expm1 also have their bits.
+log have the formulas of cpp/photograd/core/exp.h and cpp/photograd/core/log.h; exp and expm1 also
+have their bits.
 """
 
 from __future__ import annotations

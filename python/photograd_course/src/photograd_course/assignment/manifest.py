@@ -37,7 +37,7 @@ class Manifest:
     """The parsed file.
 
     Attributes:
-        id, name, title: "01", "gradient_descent", "Descent in one and many dimensions".
+        id, name, title: "01", "gradient_descent", "Gradient descent in one and many dimensions".
         folder: where the files lie.
         module: the graded module's name, without ".py".
         submission: names of the files that a submission consists of.

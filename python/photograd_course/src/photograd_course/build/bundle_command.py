@@ -8,7 +8,7 @@ from ..atomic_io import atomic_write
 from ..cli.failures import complain
 from ..cli.output import emit
 from .command import bar, chosen_folders, read_wheels
-from .course_files import dossier_of
+from .course_files import build_of
 from .gradescope import gradescope_zip
 from .products import sealed
 from .rules import findings, seed_findings
@@ -38,15 +38,15 @@ def bundle_command(
     root, folders = chosen_folders([number])
     folder = next(iter(folders.values()))
     secret, place = course_secret(secret_file, root.parent / "build" / "course")
-    dossier = dossier_of(folder, root=root, secret=secret, bar=bar)
-    found = findings(dossier_of(folder, root=root, bar=bar)) or seed_findings(dossier)
+    build = build_of(folder, root=root, secret=secret, bar=bar)
+    found = findings(build_of(folder, root=root, bar=bar)) or seed_findings(build)
     for each in found:
         complain(str(each))
-    target = out or Path(f"{dossier.manifest.id}_{kind}.zip")
+    target = out or Path(f"{build.manifest.id}_{kind}.zip")
     if not found:
-        data = sealed(dossier)
+        data = sealed(build)
         if kind == "gradescope":
-            data = gradescope_zip(dossier.manifest.id, data, secret, read_wheels(wheels))
+            data = gradescope_zip(build.manifest.id, data, secret, read_wheels(wheels))
         atomic_write(target, data)
     result = {"ok": not found, "zip": target if not found else None, "secret": place}
     emit({**result, "findings": len(found)}, as_json=as_json)

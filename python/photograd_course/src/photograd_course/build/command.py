@@ -12,9 +12,9 @@ from ..cli.failures import complain
 from ..cli.output import emit, note
 from ..cli.progress import Progress
 from ..errors import IoError, message
+from .assignment_build import AssignmentBuild
 from .course_file import NAME, course_findings, read_course
-from .course_files import dossier_of
-from .dossier import Dossier
+from .course_files import build_of
 from .hint_table import public_hints, write_hints
 from .kits import match_folder, no_sources, source_folders, source_root
 from .products import make_products, publishable, write_tree
@@ -54,11 +54,11 @@ def build_command(request: Request) -> bool:
     trees = {}
     for name, folder in folders.items():
         if request.update_hints:
-            write_hints(folder, public_hints(dossier_of(folder, root=root, bar=bar)))
-        dossier = dossier_of(folder, root=root, secret=secret, bar=bar)
-        bad = findings(dossier_of(folder, root=root, bar=bar)) or seed_findings(dossier)
+            write_hints(folder, public_hints(build_of(folder, root=root, bar=bar)))
+        build = build_of(folder, root=root, secret=secret, bar=bar)
+        bad = findings(build_of(folder, root=root, bar=bar)) or seed_findings(build)
         if not bad:
-            trees[name] = make_products(dossier, read_wheels(request.wheels)).files()
+            trees[name] = make_products(build, read_wheels(request.wheels)).files()
         found += bad
     if not found:
         for name, files in trees.items():
@@ -104,15 +104,15 @@ def read_wheels(folder: Path | None) -> dict[str, bytes]:
 
 @contextmanager
 def bar(title: str, total: int) -> Iterator[Callable[[int], None]]:
-    """A progress bar for `Dossier`."""
+    """A progress bar for `AssignmentBuild`."""
     with Progress(title, total) as progress:
         yield progress.update
 
 
 def _publish(root: Path, folders: dict[str, Path], out: Path, found: list[Finding]) -> list[str]:
-    dossiers: list[Dossier] = [dossier_of(folder, root=root) for folder in folders.values()]
-    for dossier in dossiers:
-        found += reading_findings(dossier)
+    builds: list[AssignmentBuild] = [build_of(folder, root=root) for folder in folders.values()]
+    for build in builds:
+        found += reading_findings(build)
     if found:
         return []
     files: dict[str, bytes] = {}

@@ -2,7 +2,7 @@
 
     [[assignment]]
     id = "01"
-    title = "Descent in one and many dimensions"
+    title = "Gradient descent in one and many dimensions"
     hours = 8
     prerequisites = []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from .dossier import Bar, Dossier, no_bar
+from .assignment_build import AssignmentBuild, Bar, no_bar
 from .judging import RULES_SECRET
 from .kits import PACKAGE, source_folders
 from .public import wheel_kits
@@ -13,15 +13,15 @@ from .public import wheel_kits
 TEXTS = (".py", ".md", ".toml", ".json", ".ipynb")
 
 
-def dossier_of(
+def build_of(
     folder: Path,
     *,
     secret: bytes = RULES_SECRET,
     root: Path | None = None,
     cache: Path | None = None,
     bar: Bar = no_bar,
-) -> Dossier:
-    """The dossier of one assignment, with its neighbors and both wheels to search for leaks.
+) -> AssignmentBuild:
+    """The build of one assignment, with its neighbors and both wheels to search for leaks.
 
     Args:
         folder: its source.
@@ -36,7 +36,7 @@ def dossier_of(
     for name, path in neighbors.items():
         if name != folder.name:
             haystacks.update(_neighbor_texts(name, path))
-    return Dossier(
+    return AssignmentBuild(
         folder=folder.resolve(),
         secret=secret,
         cache=cache or default_cache(around),

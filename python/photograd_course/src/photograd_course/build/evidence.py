@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from .course_files import dossier_of
-from .dossier import Bar, Dossier, no_bar
+from .assignment_build import AssignmentBuild, Bar, no_bar
+from .course_files import build_of
 from .judging import Verdict
 from .rules import findings
 from .rules.automatic import survivors
@@ -30,36 +30,36 @@ def evidence(
         (at most 0.1 is allowed), `wrong` the smallest multiple of it by which a named mutant fails
         (at least 10). None where the rules that read files already fail.
     """
-    dossier = dossier_of(folder, root=root, cache=cache, bar=bar)
-    found = [str(each) for each in findings(dossier)]
-    reading_failed = found and "solution_verdict" not in vars(dossier)
+    build = build_of(folder, root=root, cache=cache, bar=bar)
+    found = [str(each) for each in findings(build)]
+    reading_failed = found and "solution_verdict" not in vars(build)
     counts: dict[str, Any] = {"assignment": folder.name, "ok": not found, "findings": found}
-    if reading_failed or dossier.solution_verdict.lost:
+    if reading_failed or build.solution_verdict.lost:
         return counts
-    return {**counts, **_counts(dossier)}
+    return {**counts, **_counts(build)}
 
 
-def _counts(dossier: Dossier) -> dict[str, Any]:
-    alive = survivors(dossier)
-    listed = sum(any(each.fits(mutant) for each in dossier.equivalents) for mutant in alive)
-    right = [dossier.solution_verdict, *dossier.alternative_verdicts.values()]
-    wrong = list(dossier.mutant_verdicts.values())
-    named = [set(dossier.mutant_verdicts[m.name].lost) == set(m.loses) for m in dossier.mutants]
-    accepted = [not verdict.lost for verdict in dossier.alternative_verdicts.values()]
+def _counts(build: AssignmentBuild) -> dict[str, Any]:
+    alive = survivors(build)
+    listed = sum(any(each.fits(mutant) for each in build.equivalents) for mutant in alive)
+    right = [build.solution_verdict, *build.alternative_verdicts.values()]
+    wrong = list(build.mutant_verdicts.values())
+    named = [set(build.mutant_verdicts[m.name].lost) == set(m.loses) for m in build.mutants]
+    accepted = [not verdict.lost for verdict in build.alternative_verdicts.values()]
     return {
-        "checks": len(dossier.checks),
-        "questions": len(dossier.questions),
+        "checks": len(build.checks),
+        "questions": len(build.questions),
         "named_mutants": len(named),
         "named_mutants_as_listed": sum(named),
-        "automatic_mutants": len(dossier.automatic),
-        "automatic_mutants_killed": len(dossier.automatic) - len(alive),
+        "automatic_mutants": len(build.automatic),
+        "automatic_mutants_killed": len(build.automatic) - len(alive),
         "equivalent": listed,
         "unexplained_survivors": len(alive) - listed,
         "alternatives": len(accepted),
         "alternatives_accepted": sum(accepted),
         "margin_right": max(_margins(right, passed=True), default=None),
         "margin_wrong": min(_margins(wrong, passed=False), default=None),
-        "solution_seconds": sum(each["seconds"] for each in dossier.solution_verdict.outcomes),
+        "solution_seconds": sum(each["seconds"] for each in build.solution_verdict.outcomes),
     }
 
 

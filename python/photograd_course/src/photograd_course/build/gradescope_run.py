@@ -12,14 +12,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..grade.intake import take
-from ..grade.load import load
-from ..grade.one import Case, grade_guarded, grade_one
-from ..grade.report import Report
-from ..grade.report_gradescope import ResultsFile, best_earlier
-from ..grade.submission import Submission
-from ..grade.workers import Workers, isolated_workers
 from ..grading.failures import GraderFault
+from ..submissions.intake import take
+from ..submissions.load import load
+from ..submissions.one import Case, grade_guarded, grade_one
+from ..submissions.report import Report
+from ..submissions.report_gradescope import ResultsFile, best_earlier
+from ..submissions.submission import Submission
+from ..submissions.workers import Workers, isolated_workers
 
 STUDENT = "submission"  # whose it is, Gradescope knows
 

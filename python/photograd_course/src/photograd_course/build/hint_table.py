@@ -10,7 +10,7 @@ from pathlib import Path
 from ..assignment.bundle import PUBLIC_SECRET
 from ..grading.check import Check
 from ..grading.hints import hint_key
-from .dossier import Dossier
+from .assignment_build import AssignmentBuild
 from .judging import Verdict
 from .named import NamedMutant
 
@@ -41,10 +41,10 @@ def hints_of(
     return {key: said.pop() for key, said in sorted(found.items()) if len(said) == 1}
 
 
-def public_hints(dossier: Dossier) -> dict[str, str]:
+def public_hints(build: AssignmentBuild) -> dict[str, str]:
     """The table for the public checks; the same for every course, since their seeds are."""
-    checks = [check for check in dossier.checks if check.visibility == "public"]
-    return hints_of(dossier.mutants, dossier.mutant_verdicts, checks, PUBLIC_SECRET)
+    checks = [check for check in build.checks if check.visibility == "public"]
+    return hints_of(build.mutants, build.mutant_verdicts, checks, PUBLIC_SECRET)
 
 
 def read_hints(folder: Path) -> dict[str, str]:

@@ -10,29 +10,29 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ..viz.style import BLUE, FRAME, ORANGE, house_style, new_figure, place_axes, png_bytes
-from .dossier import Dossier
+from .assignment_build import AssignmentBuild
 
 CELL = 0.15  # inches
 TEXT_FILE, PICTURE_FILE = "kills.txt", "kills.png"
 
 
-def kills(dossier: Dossier) -> dict[str, tuple[str, ...]]:
+def kills(build: AssignmentBuild) -> dict[str, tuple[str, ...]]:
     """Names of the mutants that each check kills, by the check's id."""
-    verdicts = dossier.mutant_verdicts
+    verdicts = build.mutant_verdicts
     return {
         check.id: tuple(name for name, verdict in verdicts.items() if check.id in verdict.lost)
-        for check in dossier.checks
+        for check in build.checks
     }
 
 
-def matrix_files(dossier: Dossier) -> dict[str, bytes]:
+def matrix_files(build: AssignmentBuild) -> dict[str, bytes]:
     """The table and the picture, by file name; none where there are no mutants."""
-    by_check = kills(dossier)
-    names = list(dossier.mutant_verdicts)
+    by_check = kills(build)
+    names = list(build.mutant_verdicts)
     if not names:
         return {}
     with house_style():
-        picture = png_bytes(draw_kills(dossier.folder.name, names, by_check))
+        picture = png_bytes(draw_kills(build.folder.name, names, by_check))
     return {TEXT_FILE: kill_table(names, by_check).encode(), PICTURE_FILE: picture}
 
 

@@ -6,7 +6,7 @@ import keyword
 from pathlib import Path
 
 from ..errors import IoError, RangeError, message
-from .course_files import dossier_of
+from .course_files import build_of
 from .hint_table import public_hints, write_hints
 from .kits import source_folders
 from .template import template
@@ -41,5 +41,5 @@ def new_assignment(number: str, name: str, root: Path) -> Path:
     except OSError as error:
         got = error.strerror or str(error)
         raise IoError(message("new", str(folder), "a new folder", got)) from error
-    write_hints(folder, public_hints(dossier_of(folder, root=root)))
+    write_hints(folder, public_hints(build_of(folder, root=root)))
     return folder

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .dossier import Dossier
+from .assignment_build import AssignmentBuild
 from .gradescope import EXECUTABLE, gradescope_zip
 from .hint_table import hints_of
 from .matrix import matrix_files
@@ -47,36 +47,36 @@ class Products:
         }
 
 
-def make_products(dossier: Dossier, wheels: Mapping[str, bytes] | None = None) -> Products:
+def make_products(build: AssignmentBuild, wheels: Mapping[str, bytes] | None = None) -> Products:
     """The products of an assignment that keeps the rules.
 
     Args:
-        dossier: with the course's secret, so that hints fit the hidden seeds.
+        build: with the course's secret, so that hints fit the hidden seeds.
         wheels: for the Gradescope zip.
     """
-    hidden = sealed(dossier)
-    number, secret = dossier.manifest.id, dossier.secret
+    hidden = sealed(build)
+    number, secret = build.manifest.id, build.secret
     return Products(
-        kit=kit_files(dossier.folder),
-        public=public_files(dossier.folder),
+        kit=kit_files(build.folder),
+        public=public_files(build.folder),
         hidden=hidden,
-        solution=solution_files(dossier),
+        solution=solution_files(build),
         gradescope=gradescope_zip(number, hidden, secret, wheels),
     )
 
 
-def sealed(dossier: Dossier) -> bytes:
+def sealed(build: AssignmentBuild) -> bytes:
     """The sealed bundle, with hints for all checks."""
-    mutants, verdicts = dossier.mutants, dossier.mutant_verdicts
-    hints = hints_of(mutants, verdicts, dossier.checks, dossier.secret)
-    return seal_bundle(bundle_files(dossier.folder, hints), dossier.secret)
+    mutants, verdicts = build.mutants, build.mutant_verdicts
+    hints = hints_of(mutants, verdicts, build.checks, build.secret)
+    return seal_bundle(bundle_files(build.folder, hints), build.secret)
 
 
-def solution_files(dossier: Dossier) -> dict[str, bytes]:
+def solution_files(build: AssignmentBuild) -> dict[str, bytes]:
     """What instructors read: the source folder without what tools left there, and `kills.png`."""
-    found = matrix_files(dossier)
-    for path in sorted(dossier.folder.rglob("*")):
-        inside = path.relative_to(dossier.folder)
+    found = matrix_files(build)
+    for path in sorted(build.folder.rglob("*")):
+        inside = path.relative_to(build.folder)
         hidden = any(part.startswith((".", "__pycache__")) for part in inside.parts)
         if path.is_file() and not hidden:
             found[inside.as_posix()] = path.read_bytes()

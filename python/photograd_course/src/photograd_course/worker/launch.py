@@ -11,10 +11,10 @@ from ..grading.failures import GraderFault
 from . import bubblewrap, places
 from .clocks import FamilyClock, ProcessorClock
 from .home import WorkerHome, remove_tree
-from .lifelines import NamespaceLifeline, PlainLifeline, UserLifeline
 from .policy import TITLES, Policy, resource_limits
-from .process import Lifeline, WorkerDied, WorkerLied, WorkerProcess, WorkerTimeout
+from .process import Reaper, WorkerDied, WorkerLied, WorkerProcess, WorkerTimeout
 from .program import plain_command, plain_environment
+from .reapers import NamespaceReaper, PlainReaper, UserReaper
 
 if TYPE_CHECKING:
     from ..assignment.manifest import Limits
@@ -48,7 +48,7 @@ def open_worker(
             _command(home, mode),
             environment=plain_environment(),
             cwd=room,
-            lifeline=_lifeline(mode, policy),
+            reaper=_reaper(mode, policy),
             seconds=limits.seconds,
             max_body=max_body,
             longest_log=limits.output_kb << 10,
@@ -131,10 +131,10 @@ def _command(home: WorkerHome, mode: str) -> list[str]:
     return bubblewrap.command(program, home.program, inner, as_root=os.geteuid() == 0)
 
 
-def _lifeline(mode: str, policy: Policy) -> Lifeline:
+def _reaper(mode: str, policy: Policy) -> Reaper:
     if mode == "A":
-        return NamespaceLifeline(policy.uid)
-    return PlainLifeline() if policy.uid is None else UserLifeline(policy.uid)
+        return NamespaceReaper(policy.uid)
+    return PlainReaper() if policy.uid is None else UserReaper(policy.uid)
 
 
 def _wait_until_ready(worker: WorkerProcess, mode: str, policy: Policy, seconds: float) -> None:

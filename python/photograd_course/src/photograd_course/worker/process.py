@@ -1,7 +1,7 @@
 """The grader's end of a worker: start it, talk to it against the clock, and be rid of it.
 
 Portable: pipes, threads and `kill`, on any system. What more Linux offers comes in through
-`Lifeline`.
+`Reaper`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .processes import finish
 from .program import install_program, plain_command, scratch_folder
 
 __all__ = [
-    "Lifeline",
+    "Reaper",
     "WorkerDied",
     "WorkerLied",
     "WorkerProcess",
@@ -57,8 +57,8 @@ class WorkerStarved(Exception):
     """The machine gave the worker no processor: nothing can be said about the submission."""
 
 
-class Lifeline(Protocol):
-    """What a mode of isolation knows about its processes beyond the one that was started."""
+class Reaper(Protocol):
+    """Ends a worker, with whatever else its mode of isolation knows to belong to it."""
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
         """Kill the process and all that belongs to it."""
@@ -73,7 +73,7 @@ class WorkerProcess:
         *,
         environment: dict[str, str],
         cwd: Path,
-        lifeline: Lifeline | None = None,
+        reaper: Reaper | None = None,
         seconds: float = float("inf"),
         max_body: int = MAX_BODY,
         longest_log: int = LONGEST_LOG,
@@ -83,7 +83,7 @@ class WorkerProcess:
 
         Args:
             command, environment, cwd: as for Popen.
-            lifeline: how to end it; the plain way where None.
+            reaper: how to end it; the plain way where None.
             seconds: limit of all its requests together, as a Stopwatch counts them.
             max_body: bytes; an answer that announces more is a lie.
             longest_log: bytes of its output that are kept; the rest is drained.
@@ -92,7 +92,7 @@ class WorkerProcess:
         self._seconds, self._spent = seconds, 0.0
         self._clock: Clock | None = None
         self._stopwatch: Stopwatch | None = None
-        self._lifeline, self._on_end = lifeline, on_end
+        self._reaper, self._on_end = reaper, on_end
         self._max_body, self._longest_log = max_body, longest_log
         self._process = subprocess.Popen(
             list(command),
@@ -194,10 +194,10 @@ class WorkerProcess:
     def _end(self) -> None:
         self._ended.set()
         self._wanted.release()  # lets the reading thread see the end
-        if self._lifeline is None:
+        if self._reaper is None:
             finish(self._process)
         else:
-            self._lifeline.end(self._process)
+            self._reaper.end(self._process)
 
     def _watch(self) -> None:
         """End the worker when its time is over, so that no write to it can block for longer."""

@@ -1,6 +1,6 @@
 """What every assignment must satisfy before it is given to anybody: one rule a file.
 
-A rule is a function ``look(dossier) -> Iterator[str]`` that yields a sentence for each breach.
+A rule is a function ``check_NAME(build) -> Iterator[str]`` that yields a sentence for each breach.
 Those of the first group read; those of the second run the solution and its variants, which makes
 sense only once the first group is content.
 """
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from ...errors import Error
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 from . import (
     alternatives,
     automatic,
@@ -33,29 +33,29 @@ from . import (
     starter,
 )
 
-Look = Callable[[Dossier], Iterator[str]]
+Rule = Callable[[AssignmentBuild], Iterator[str]]
 
-READING: dict[str, Look] = {
-    "markers": markers.look,
-    "compiles": compiles.look,
-    "faces": faces.look,
-    "points": points.look,
-    "prerequisites": prerequisites.look,
-    "counts": counts.look,
-    "figures": figures.look,
-    "leaked names": leaked_names.look,
-    "leaked shingles": leaked_shingles.look,
-    "likeness": likeness.look,
+READING: dict[str, Rule] = {
+    "markers": markers.check_markers,
+    "compiles": compiles.check_compiles,
+    "faces": faces.check_faces,
+    "points": points.check_points,
+    "prerequisites": prerequisites.check_prerequisites,
+    "counts": counts.check_counts,
+    "figures": figures.check_figures,
+    "leaked names": leaked_names.check_leaked_names,
+    "leaked shingles": leaked_shingles.check_leaked_shingles,
+    "likeness": likeness.check_likeness,
 }
-RUNNING: dict[str, Look] = {
-    "solution": solution.look,
-    "starter": starter.look,
-    "mutants": mutants.look,
-    "alternatives": alternatives.look,
-    "margins": margins.look,
-    "automatic": automatic.look,
-    "sole": sole.look,
-    "hints": hints.look,
+RUNNING: dict[str, Rule] = {
+    "solution": solution.check_solution,
+    "starter": starter.check_starter,
+    "mutants": mutants.check_mutants,
+    "alternatives": alternatives.check_alternatives,
+    "margins": margins.check_margins,
+    "automatic": automatic.check_automatic,
+    "sole": sole.check_sole,
+    "hints": hints.check_hints,
 }
 
 
@@ -71,41 +71,41 @@ class Finding:
         return f"{self.assignment}: {self.rule}: {self.text}"
 
 
-def findings(dossier: Dossier) -> list[Finding]:
+def findings(build: AssignmentBuild) -> list[Finding]:
     """All breaches of all rules; those that need runs only when nothing else is wrong."""
-    found = reading_findings(dossier)
+    found = reading_findings(build)
     if not found:
-        found = _apply(dossier, {"solution": solution.look})
+        found = _apply(build, {"solution": solution.check_solution})
     if not found:
-        found = _apply(dossier, {name: k for name, k in RUNNING.items() if name != "solution"})
+        found = _apply(build, {name: rule for name, rule in RUNNING.items() if name != "solution"})
     return found
 
 
-def reading_findings(dossier: Dossier) -> list[Finding]:
+def reading_findings(build: AssignmentBuild) -> list[Finding]:
     """Breaches of the rules that run nothing."""
-    found = _apply(dossier, {"markers": markers.look})
+    found = _apply(build, {"markers": markers.check_markers})
     if not found:
-        found = _apply(dossier, {name: look for name, look in READING.items() if name != "markers"})
+        found = _apply(build, {name: rule for name, rule in READING.items() if name != "markers"})
     return found
 
 
-def seed_findings(dossier: Dossier) -> list[Finding]:
+def seed_findings(build: AssignmentBuild) -> list[Finding]:
     """Breaches of the rules that depend on hidden seeds, for a course's own secret."""
-    if all(check.visibility == "public" for check in dossier.checks):
+    if all(check.visibility == "public" for check in build.checks):
         return []
-    found = _apply(dossier, {"solution": solution.look})
+    found = _apply(build, {"solution": solution.check_solution})
     if not found:
         names = ("mutants", "alternatives", "margins")
-        found = _apply(dossier, {name: RUNNING[name] for name in names})
+        found = _apply(build, {name: RUNNING[name] for name in names})
     return found
 
 
-def _apply(dossier: Dossier, rules: dict[str, Look]) -> list[Finding]:
+def _apply(build: AssignmentBuild, rules: dict[str, Rule]) -> list[Finding]:
     found = []
-    for name, look in rules.items():
+    for name, rule in rules.items():
         try:
-            sentences = list(look(dossier))
+            sentences = list(rule(build))
         except Error as error:  # a file that cannot even be read breaks the rule, too
             sentences = [str(error)]
-        found += [Finding(name, dossier.folder.name, text) for text in sentences]
+        found += [Finding(name, build.folder.name, text) for text in sentences]
     return found

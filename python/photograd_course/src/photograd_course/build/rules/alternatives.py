@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_alternatives(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    for name, verdict in dossier.alternative_verdicts.items():
+    for name, verdict in build.alternative_verdicts.items():
         for each in verdict.outcomes:
             if each["status"] != "passed":
                 yield f"{name} is right and does not pass {each['id']}: {each['text']}"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_compiles(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    for path, data in dossier.visible.items():
+    for path, data in build.visible.items():
         if not path.endswith(".py"):
             continue
         try:

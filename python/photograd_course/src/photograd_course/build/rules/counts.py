@@ -8,27 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 MUTANTS = 5
 ALTERNATIVES = 3
 ADJOINT = ("backward", "adjoint", "and_grad")
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_counts(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    for task in dossier.manifest.tasks:
+    for task in build.manifest.tasks:
         adjoints = [name for name in task.functions if is_adjoint(name)]
-        count = sum(task.id in mutant.tasks for mutant in dossier.mutants)
+        count = sum(task.id in mutant.tasks for mutant in build.mutants)
         if adjoints and count < MUTANTS:
             yield (
                 f"task {task.id} has the adjoint {adjoints[0]} and {count} named mutants; "
                 f"it needs {MUTANTS}"
             )
-    if (count := len(dossier.alternatives)) < ALTERNATIVES:
+    if (count := len(build.alternatives)) < ALTERNATIVES:
         yield f"there are {count} alternatives; it needs {ALTERNATIVES}"
-    known = {task.id for task in dossier.manifest.tasks}
-    for mutant in dossier.mutants:
+    known = {task.id for task in build.manifest.tasks}
+    for mutant in build.mutants:
         for task_id in sorted(set(mutant.tasks) - known):
             yield f"mutant {mutant.name} lies in {task_id}, which is no task"
 

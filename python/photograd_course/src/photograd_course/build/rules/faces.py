@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_faces(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    full, stripped = _faces(dossier.source), _faces(dossier.starter)
+    full, stripped = _faces(build.source), _faces(build.starter)
     for name in sorted(set(full) | set(stripped)):
         if name not in stripped:
             yield f"{name} is public in the solution and missing from the starter"
@@ -20,7 +20,7 @@ def look(dossier: Dossier) -> Iterator[str]:
             yield f"{name} has another signature in the starter"
         elif full[name][1] != stripped[name][1]:
             yield f"{name} has another docstring in the starter"
-    for task in dossier.manifest.tasks:
+    for task in build.manifest.tasks:
         for function in task.functions:
             if function not in full:
                 yield f"task {task.id} names {function}, which the module does not define"

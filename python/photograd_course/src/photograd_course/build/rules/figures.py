@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 LARGEST = 120_000  # bytes
 _LINK = re.compile(r"!\[[^\]]*\]\(([^)\s]+)")
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_figures(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    handout = dossier.visible.get("kit/README.md", b"").decode("utf-8")
+    handout = build.visible.get("kit/README.md", b"").decode("utf-8")
     for link in sorted(set(_LINK.findall(handout))):
-        if f"kit/{link}" not in dossier.visible:
+        if f"kit/{link}" not in build.visible:
             yield f"the handout shows {link}, which is not in the kit"
-    for path, data in dossier.visible.items():
+    for path, data in build.visible.items():
         if path.endswith(".png") and len(data) > LARGEST:
             yield f"{path} has {len(data)} bytes, more than {LARGEST}"

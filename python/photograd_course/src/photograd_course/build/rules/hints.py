@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 from ..hint_table import public_hints, read_hints
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_hints(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    if read_hints(dossier.folder) != public_hints(dossier):
+    if read_hints(build.folder) != public_hints(build):
         yield "hints.json is not up to date: run 'photograd course build --update-hints'"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 from ..leak_words import (
     Shingle,
     fenced_code,
@@ -19,10 +19,10 @@ from ..leak_words import (
 from .leaked_names import seen_texts
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_leaked_shingles(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    telling = telling_shingles(dossier)
-    for path, text in sorted(seen_texts(dossier).items()):
+    telling = telling_shingles(build)
+    for path, text in sorted(seen_texts(build).items()):
         if path.endswith(".py"):
             code = text
         elif path.endswith(".md"):
@@ -35,11 +35,11 @@ def look(dossier: Dossier) -> Iterator[str]:
             yield f"'{' '.join(common[0])}'{more} of the solution stands in {path}"
 
 
-def telling_shingles(dossier: Dossier) -> set[Shingle]:
+def telling_shingles(build: AssignmentBuild) -> set[Shingle]:
     """Those of the solution that are evidence."""
-    handout = dossier.visible.get("kit/README.md", b"").decode("utf-8")
-    given = shingles_of(dossier.starter) | shingles_of(fenced_code(handout))
-    parts = {each for part in dossier.parts for each in shingles_of(_dedented(part.text))}
+    handout = build.visible.get("kit/README.md", b"").decode("utf-8")
+    given = shingles_of(build.starter) | shingles_of(fenced_code(handout))
+    parts = {each for part in build.parts for each in shingles_of(_dedented(part.text))}
     return {each for each in parts - given - well_known_shingles() if says_something(each)}
 
 

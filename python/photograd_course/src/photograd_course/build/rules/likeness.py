@@ -11,23 +11,23 @@ import ast
 from collections.abc import Iterator
 from itertools import chain
 
-from ...grade.similarity import similar_pairs
-from ..dossier import Dossier
+from ...submissions.similarity import similar_pairs
+from ..assignment_build import AssignmentBuild
 
 MOST = 0.6  # share of the shorter text's fingerprints
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_likeness(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    names = [name for task in dossier.manifest.tasks for name in task.functions]
-    own = normal_forms(dossier.source)
-    for alternative, text in dossier.alternatives.items():
+    names = [name for task in build.manifest.tasks for name in task.functions]
+    own = normal_forms(build.source)
+    for alternative, text in build.alternatives.items():
         other = normal_forms(text)
         for name in names:
             if name in own and own[name] == other.get(name):
                 yield f"{name} of the alternative {alternative} is the solution's"
-        texts = {"solution": dossier.source, alternative: text}
-        for *_, share in similar_pairs(texts, dossier.starter):
+        texts = {"solution": build.source, alternative: text}
+        for *_, share in similar_pairs(texts, build.starter):
             if share > MOST:
                 yield f"the alternative {alternative} shares {share:.0%} with the solution"
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 from ..judging import Verdict
 
 FACTOR = 10.0
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_margins(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    right = {"the solution": dossier.solution_verdict, **dossier.alternative_verdicts}
+    right = {"the solution": build.solution_verdict, **build.alternative_verdicts}
     for name, verdict in right.items():
         for check, margin in margins(verdict, passed=True).items():
             if not margin <= 1.0 / FACTOR:
@@ -20,8 +20,8 @@ def look(dossier: Dossier) -> Iterator[str]:
                     f"{check}: {name} is right and uses {margin:.2g} of the tolerance; "
                     f"at most {1.0 / FACTOR:g} is meant to be used"
                 )
-    for mutant in dossier.mutants:
-        for check, margin in margins(dossier.mutant_verdicts[mutant.name], passed=False).items():
+    for mutant in build.mutants:
+        for check, margin in margins(build.mutant_verdicts[mutant.name], passed=False).items():
             if not margin >= FACTOR:
                 yield (
                     f"{check}: {mutant.name} is wrong by only {margin:.3g} times the tolerance; "

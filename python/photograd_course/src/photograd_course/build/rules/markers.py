@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_markers(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    known = {task.id for task in dossier.manifest.tasks}
-    found = {part.task for part in dossier.parts}
+    known = {task.id for task in build.manifest.tasks}
+    found = {part.task for part in build.parts}
     for task in sorted(found - known):
-        yield f"{dossier.module_file} marks a solution of {task}, which is no task of the manifest"
+        yield f"{build.module_file} marks a solution of {task}, which is no task of the manifest"
     for task in sorted(known - found):
-        yield f"{dossier.module_file} marks no solution of task {task}"
+        yield f"{build.module_file} marks no solution of task {task}"

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_mutants(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    known = {check.id for check in dossier.checks}
-    for mutant in dossier.mutants:
-        lost, says = set(dossier.mutant_verdicts[mutant.name].lost), set(mutant.loses)
+    known = {check.id for check in build.checks}
+    for mutant in build.mutants:
+        lost, says = set(build.mutant_verdicts[mutant.name].lost), set(mutant.loses)
         for unknown in sorted(says - known):
             yield f"{mutant.name} should lose {unknown}, which is no check"
         for check in sorted((says & known) - lost):
@@ -20,5 +20,5 @@ def look(dossier: Dossier) -> Iterator[str]:
             yield f"{mutant.name} loses {check}, which its row does not list"
         if not says:
             yield f"{mutant.name} loses nothing"
-        for each in dossier.mutant_verdicts[mutant.name].ours:
+        for each in build.mutant_verdicts[mutant.name].ours:
             yield f"{each['id']} falters on {mutant.name}: {each['text']}"

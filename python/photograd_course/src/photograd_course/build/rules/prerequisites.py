@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_prerequisites(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    if dossier.manifest.folder_name != dossier.folder.name:
-        yield f"the folder should be called {dossier.manifest.folder_name}"
-    for each in dossier.manifest.prerequisites:
-        if each not in dossier.siblings:
+    if build.manifest.folder_name != build.folder.name:
+        yield f"the folder should be called {build.manifest.folder_name}"
+    for each in build.manifest.prerequisites:
+        if each not in build.siblings:
             yield f"prerequisite {each} does not exist"
-        elif each >= dossier.manifest.id:
-            yield f"prerequisite {each} does not come before {dossier.manifest.id}"
+        elif each >= build.manifest.id:
+            yield f"prerequisite {each} does not come before {build.manifest.id}"

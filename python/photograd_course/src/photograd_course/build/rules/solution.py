@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_solution(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    verdict = dossier.solution_verdict
+    verdict = build.solution_verdict
     for each in verdict.outcomes:
         if each["status"] != "passed":
             yield f"the solution does not pass {each['id']}: {each['text']}"

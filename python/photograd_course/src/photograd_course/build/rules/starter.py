@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from ..dossier import Dossier
+from ..assignment_build import AssignmentBuild
 from ..regions import find_regions
 
 
-def look(dossier: Dossier) -> Iterator[str]:
+def check_starter(build: AssignmentBuild) -> Iterator[str]:
     """See the module."""
-    verdict = dossier.starter_verdict
-    own = _tasks_with_own_stub(dossier)
+    verdict = build.starter_verdict
+    own = _tasks_with_own_stub(build)
     for each in verdict.outcomes:
         if each["status"] == "passed" or each["points"]:
             yield f"the starter passes {each['id']}"
@@ -30,7 +30,7 @@ def look(dossier: Dossier) -> Iterator[str]:
         yield f"the starter does not come to an end in {check}"
 
 
-def _tasks_with_own_stub(dossier: Dossier) -> set[str]:
-    regions = find_regions(dossier.source, dossier.module_file)
+def _tasks_with_own_stub(build: AssignmentBuild) -> set[str]:
+    regions = find_regions(build.source, build.module_file)
     pairs = pairwise(regions)
     return {above.task for above, below in pairs if below.kind == "student"}

@@ -29,8 +29,8 @@ def register(course: typer.Typer) -> None:
         its solution graded in isolation. Then the attacks on the grader, in each strict isolation
         mode that works here. Exit code 1 where anything is missing or broken.
         """
-        from ...grade.doctor import examine
-        from ...grade.doctor_report import print_examination
+        from ...submissions.doctor import examine
+        from ...submissions.doctor_report import print_examination
         from ..output import note
 
         result = examine(quick=quick, say=note)

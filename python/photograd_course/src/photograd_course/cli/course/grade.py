@@ -52,7 +52,7 @@ def register(course: typer.Typer) -> None:
         check.
         Exit code 3 when the grader itself failed for someone: no such grade counts as a zero.
         """
-        from ...grade.command import Request, grade_command
+        from ...submissions.command import Request, grade_command
 
         request = Request(
             assignment, submission, bundle, secret_file, jobs, resume, out, mode, as_json

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from photograd_course.assignment.tokens import LAYOUT, code_words, tokens
-from photograd_course.grade.submission import SOURCE_BYTES
+from photograd_course.submissions.submission import SOURCE_BYTES
 
 SOURCES = sorted(Path(__file__).parents[3].glob("assignments/*/checks/*.py"))
 _SILENT = {

@@ -42,7 +42,7 @@ def room(*, size: int = 6, triangles: bool = False) -> Scene:
         uv = np.concatenate([np.stack([s, np.ones(4)], 1), np.stack([s, np.zeros(4)], 1)])
         faces = [[k, k + 1, k + 5] for k in range(3)] + [[k, k + 5, k + 4] for k in range(3)]
         lamp = MeshShape("lamp", vertices, np.array(faces), "black", lamp.emission, uv=uv)
-    shapes = (floor, replace(lamp, glow=TextureUse("sign")))
+    shapes = (floor, replace(lamp, emission_texture=TextureUse("sign")))
     materials = {"floor": GRAY, "black": BLACK}
     return Scene("room", shapes, materials, view(size), textures={"sign": sign()})
 
@@ -52,7 +52,7 @@ def test_a_sign_shows_its_picture() -> None:
     shape = rectangle("sign", [-1, -1, 0], [2, 0, 0], [0, 2, 0], "black", [4.0, 2.0, 1.0])
     scene = Scene(
         "sign",
-        (replace(shape, glow=TextureUse("t")),),
+        (replace(shape, emission_texture=TextureUse("t")),),
         {"black": BLACK},
         view(8, (0, 0, 4.0), (0, 0, 0)),
         textures={"t": Texture(blocks)},
@@ -82,7 +82,7 @@ def test_lights_are_asked_by_their_mean() -> None:
     scene = room()
     other = rectangle("other", [-0.6, 1.2, 0.8], [1.2, 0, 0], [0, 0, 1.2], "black", [4, 3, 2])
     textures = {**scene.textures, "bright": Texture(2 * scene.textures["sign"].values)}
-    shapes = (*scene.shapes, replace(other, glow=TextureUse("bright")))
+    shapes = (*scene.shapes, replace(other, emission_texture=TextureUse("bright")))
     tracer = PathTracer(replace(scene, shapes=shapes, textures=textures))
     entries, pmf = tracer._geometry.choose_lights(np.array([0.1, 0.9]))
     assert entries.tolist() == [0, 1]
@@ -116,9 +116,11 @@ def test_wrong_gradients_die() -> None:
 def test_what_cannot_be_is_refused() -> None:
     scene = room()
     ball = SphereShape("ball", np.zeros(3), 1.0, "black")
-    with pytest.raises(SceneError, match=r"lamp\.glow: expected one of the scene's textures"):
+    with pytest.raises(
+        SceneError, match=r"lamp\.emission_texture: expected one of the scene's textures"
+    ):
         replace(scene, textures={})
-    lamp = replace(scene.shapes[1], glow=TextureUse("sign", 1))
+    lamp = replace(scene.shapes[1], emission_texture=TextureUse("sign", 1))
     with pytest.raises(SceneError, match="at least 4 channels"):
         replace(scene, shapes=(scene.shapes[0], lamp, ball))
     with pytest.raises(SceneError, match=r"lamp\.uv: expected texture coordinates"):

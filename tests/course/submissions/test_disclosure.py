@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import pytest
 from photograd_course.assignment.bundle import Bundle
-from photograd_course.grade.disclosure import for_student, magnitude
-from photograd_course.grade.report import Report
-from photograd_course.grade.report_gradescope import as_results
-from photograd_course.grade.report_html import render_page
 from photograd_course.grading import Number, Outcome, Status, Trial, check
+from photograd_course.submissions.disclosure import for_student, magnitude
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.report_gradescope import as_results
+from photograd_course.submissions.report_html import render_page
 
 SPY = """
 import numpy as np

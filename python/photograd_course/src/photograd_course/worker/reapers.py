@@ -23,11 +23,11 @@ os.kill(-1, 9)
 
 
 @dataclass(frozen=True)
-class PlainLifeline:
+class PlainReaper:
     """A process in a session of its own; on Linux with its descendants. Any system."""
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
-        """See Lifeline. What has left family and session escapes."""
+        """See Reaper. What has left family and session escapes."""
         family = processes.family(process.pid) if process.poll() is None else []
         kill_group = getattr(os, "killpg", None)
         if kill_group is not None:
@@ -39,13 +39,13 @@ class PlainLifeline:
 
 
 @dataclass(frozen=True)
-class UserLifeline(PlainLifeline):
+class UserReaper(PlainReaper):
     """A process that has turned into a user of its own: all of that user's processes end."""
 
     uid: int
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
-        """See Lifeline."""
+        """See Reaper."""
         super().end(process)
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(PATIENCE)
@@ -53,13 +53,13 @@ class UserLifeline(PlainLifeline):
 
 
 @dataclass(frozen=True)
-class NamespaceLifeline(PlainLifeline):
+class NamespaceReaper(PlainReaper):
     """A process namespace: its first process takes all others along. `uid` where it has one."""
 
     uid: int | None
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
-        """See Lifeline."""
+        """See Reaper."""
         family = processes.family(process.pid) if process.poll() is None else []
         super().end(process)
         with contextlib.suppress(subprocess.TimeoutExpired):

@@ -8,9 +8,9 @@ import math
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.assignment.drawing import draw
-from photograd_course.grade.answers import Answered, read_answers, score_answers
-from photograd_course.grade.submission import Submission
 from photograd_course.student.predictions import digest
+from photograd_course.submissions.answers import Answered, read_answers, score_answers
+from photograd_course.submissions.submission import Submission
 
 SOURCE = "x = 1\n"
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.grade.one import Case, grade_one
-from photograd_course.grade.submission import Submission
-from photograd_course.grade.workers import IsolatedWorkers
+from photograd_course.submissions.one import Case, grade_one
+from photograd_course.submissions.submission import Submission
+from photograd_course.submissions.workers import IsolatedWorkers
 from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.self_test import self_test
 

@@ -11,7 +11,11 @@ from photograd.errors import Error, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene, TextureUse
 from photograd.transport.accumulation import PAIR_UNIFORM_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
-from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
+from photograd.transport.inverse import (
+    dual_buffer_loss,
+    dual_buffer_loss_backward,
+    loss_and_gradients,
+)
 from photograd.transport.metal_room import metal_room
 
 from support.bits import same_bits
@@ -51,11 +55,11 @@ def test_one_pass_is_as_good_as_four(name: str) -> None:
     target, weight = wanted(tracer.scene)
     given: dict[str, Any] = {"spp": 21, "options": PATH}
     a, b = (tracer.render(seed=seed, **given).mean for seed in (3, 8))
-    d_a, d_b = cross_loss_backward(a, b, target, weight)
+    d_a, d_b = dual_buffer_loss_backward(a, b, target, weight)
     of_a = tracer.render_backward(d_a, seed=3, **given)
     of_b = tracer.render_backward(d_b, seed=8, **given)
     loss, found = loss_and_gradients(tracer, target, weight, seeds=(3, 8), **given)
-    assert loss == pytest.approx(cross_loss(a, b, target, weight), rel=1e-12)
+    assert loss == pytest.approx(dual_buffer_loss(a, b, target, weight), rel=1e-12)
     assert found.keys() == tracer.params.keys()
     for key, value in found.items():
         expected = of_a[key] + of_b[key]

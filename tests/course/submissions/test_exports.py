@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import IoError, SceneError
-from photograd_course.grade import exports
-from photograd_course.grade.exports import find_sources, is_batch
+from photograd_course.submissions import exports
+from photograd_course.submissions.exports import find_sources, is_batch
 
 MODULE = "x = 1\n"
 

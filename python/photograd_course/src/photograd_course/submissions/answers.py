@@ -56,7 +56,7 @@ def score_answers(bundle: Bundle, submission: Submission) -> tuple[list[Answered
         The results, the student's name as `answers.toml` has it, and warnings.
 
     Raises:
-        Exception: nobody foresaw what the files hold, or this code has a mistake; see `one.py`.
+        Exception: nobody foresaw what the files hold, or this code has a mistake.
     """
     student, given, warnings = read_answers(submission.files.get("answers.toml"))
     locked: dict[str, str] = {}

@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 from photograd_course.errors import IoError, SceneError
-from photograd_course.grade.batch import Batch, run_batch
-from photograd_course.grade.exports import find_sources
-from photograd_course.grade.grades_csv import Change
-from photograd_course.grade.load import load
-from photograd_course.grade.report import Report
-from photograd_course.grade.run_folder import RunFolder
-from photograd_course.grade.workers import isolated_workers
+from photograd_course.submissions.batch import Batch, run_batch
+from photograd_course.submissions.exports import find_sources
+from photograd_course.submissions.grades_csv import Change
+from photograd_course.submissions.load import load
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.run_folder import RunFolder
+from photograd_course.submissions.workers import isolated_workers
 
 Run = Callable[..., tuple[list[Report], list[Change] | None]]
 STUDENTS = ("Ada", "Bo", "Cy", "=Di")

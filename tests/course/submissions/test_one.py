@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import SceneError
-from photograd_course.grade.one import Case, grade_one
-from photograd_course.grade.report import Report
-from photograd_course.grade.report_json import read_record, verdict_digest, write_record
-from photograd_course.grade.submission import Submission
-from photograd_course.grade.workers import Workers
 from photograd_course.grading import Number, Trial, check
 from photograd_course.grading.failures import GraderFault
+from photograd_course.submissions.one import Case, grade_one
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.report_json import read_record, verdict_digest, write_record
+from photograd_course.submissions.submission import Submission
+from photograd_course.submissions.workers import Workers
 
 Grade = Callable[..., Report]
 SECRET = b"a secret of the tests"

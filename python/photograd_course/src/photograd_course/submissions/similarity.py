@@ -19,11 +19,11 @@ from ..assignment.tokens import END, LAYOUT, NAME, NUMBER, OPERATOR, STRING, Tok
 
 RUN = 12  # tokens in one hash: two or three lines, so that idioms alone do not match
 WINDOW = 8
-COMMON = 0.5  # prints in more than this share of submissions are the assignment's own
+COMMON = 0.5  # fingerprints in more than this share of submissions are the assignment's own
 FEWEST = 8  # submissions from which that share means anything
 # To be listed. Solutions and alternatives of all assignments, pair by pair: differently written
-# modules share up to 0.17 of the shorter one's prints, 0.37 where two functions are the same;
-# disguised copies 0.97 and more. Of single functions, differently written, 7 prints at most.
+# modules share up to 0.17 of the shorter one's fingerprints, 0.37 where two functions are the
+# same; disguised copies 0.97 and more. Of single functions, differently written, 7 at most.
 LEAST = 0.4
 FEWEST_SHARED = 8
 
@@ -52,10 +52,10 @@ def similar_pairs(sources: Mapping[str, str], starter: str = "") -> list[tuple[s
         starter: what all were given.
 
     Returns:
-        (student, student, shared prints / prints of the shorter one).
+        (student, student, shared fingerprints / fingerprints of the shorter one).
     """
-    given = prints(starter)
-    found = {student: prints(text) - given for student, text in sources.items()}
+    given = fingerprints(starter)
+    found = {student: fingerprints(text) - given for student, text in sources.items()}
     if len(found) >= FEWEST:
         counts = Counter(each for marks in found.values() for each in marks)
         common = {each for each, count in counts.items() if count > COMMON * len(found)}
@@ -69,7 +69,7 @@ def similar_pairs(sources: Mapping[str, str], starter: str = "") -> list[tuple[s
     return sorted(pairs, key=lambda pair: (-pair[2], pair[0], pair[1]))
 
 
-def prints(source: str) -> set[int]:
+def fingerprints(source: str) -> set[int]:
     """The winnowed hashes of a text."""
     words = normalized(source)
     hashes = [_hash(words[k : k + RUN]) for k in range(len(words) - RUN + 1)]

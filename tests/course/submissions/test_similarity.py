@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grade.similarity import FEWEST_SHARED, normalized, prints, similar_pairs
+from photograd_course.submissions.similarity import (
+    FEWEST_SHARED,
+    fingerprints,
+    normalized,
+    similar_pairs,
+)
 
 ONE = '''
 def descend(gradient, x0, tau, n):
@@ -94,13 +99,13 @@ def laboured(text: str) -> str:
 def test_idle_statements_and_functions_for_operators_hide_nothing() -> None:
     copy = laboured(ONE)
     compile(copy, "copy.py", "exec")
-    assert prints(copy) == prints(ONE)
+    assert fingerprints(copy) == fingerprints(ONE)
     assert similar_pairs({"Ada": ONE, "Bo": copy, "Cy": TWO}) == [("Ada", "Bo", 1.0)]
 
 
 def test_a_few_lines_are_too_little_to_compare() -> None:
     short = "def mean(values):\n    return float(np.sum(values[:-1] * 2.0)) / len(values)\n"
-    assert 0 < len(prints(short)) < FEWEST_SHARED
+    assert 0 < len(fingerprints(short)) < FEWEST_SHARED
     assert similar_pairs({"Ada": short, "Bo": short}) == []
 
 
@@ -117,6 +122,6 @@ def test_what_most_have_in_common_does_not_count() -> None:
 
 
 def test_text_that_is_no_program_is_no_error() -> None:
-    assert prints("def (((\n") == set()
+    assert fingerprints("def (((\n") == set()
     assert normalized("'''open") == []
     assert similar_pairs({"a": "", "b": ""}) == []

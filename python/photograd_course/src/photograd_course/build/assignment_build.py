@@ -37,7 +37,7 @@ def _ignore(done: int) -> None:
 
 
 @dataclass
-class Dossier:
+class AssignmentBuild:
     """One assignment, with everything worked out when first asked for, and kept.
 
     Attributes:

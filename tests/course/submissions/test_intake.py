@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import Bundle
-from photograd_course.grade.intake import take
-from photograd_course.grade.submission import OTHER_BYTES, SOURCE_BYTES, Submission
+from photograd_course.submissions.intake import take
+from photograd_course.submissions.submission import OTHER_BYTES, SOURCE_BYTES, Submission
 
 GOOD = b"x = 1\n"
 Take = Callable[[bytes], Submission]

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 from photograd_course.cli import run
-from photograd_course.grade import doctor
-from photograd_course.grade.attack_evidence import attack_evidence, summary
+from photograd_course.submissions import doctor
+from photograd_course.submissions.attack_evidence import attack_evidence, summary
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
 

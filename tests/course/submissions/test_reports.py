@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle
-from photograd_course.grade.answers import Answered
-from photograd_course.grade.grades_csv import changes, changes_table, grades_table, page_name
-from photograd_course.grade.printable import csv_cell, file_name, markdown, printable
-from photograd_course.grade.report import Report
-from photograd_course.grade.report_gradescope import ResultsFile, as_results, best_earlier
-from photograd_course.grade.report_html import render_page
-from photograd_course.grade.report_json import write_record
-from photograd_course.grade.report_text import print_report
 from photograd_course.grading import Outcome, Status
+from photograd_course.submissions.answers import Answered
+from photograd_course.submissions.grades_csv import changes, changes_table, grades_table, page_name
+from photograd_course.submissions.printable import csv_cell, file_name, markdown, printable
+from photograd_course.submissions.report import Report
+from photograd_course.submissions.report_gradescope import ResultsFile, as_results, best_earlier
+from photograd_course.submissions.report_html import render_page
+from photograd_course.submissions.report_json import write_record
+from photograd_course.submissions.report_text import print_report
 from rich.console import Console
 
 NASTY = (

@@ -1,0 +1,136 @@
+"""Wrong arguments of the functions at the door are refused in one sentence that says what to do."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import photograd
+import pytest
+from photograd.errors import DtypeError, Error, RangeError, ShapeError
+from photograd.fields import DenseGrid
+from photograd.fitting import Fit, FitOptions, options_for
+from photograd.fitting.drawing import render_field
+from photograd.representation import REGISTERED, Outputs, Representation, register
+
+from tests.fit import scene
+
+
+def model() -> photograd.Model:
+    return scene.as_model(scene.truth())
+
+
+def camera() -> photograd.Camera:
+    return scene.capture().test[0].camera
+
+
+CALLS: dict[str, tuple[Callable[[], Any], type[Error], str]] = {
+    "capture for views": (
+        lambda: photograd.evaluate(model(), scene.capture()),  # type: ignore[arg-type]
+        DtypeError,
+        r"^evaluate: views: expected a sequence of Views, got Capture \(such as capture.test\)",
+    ),
+    "swapped": (
+        lambda: photograd.evaluate(scene.capture().test, model()),  # type: ignore[arg-type]
+        DtypeError,
+        r"^evaluate: model: expected a Model, got tuple",
+    ),
+    "view for a camera": (
+        lambda: photograd.render(model(), scene.capture().test[0]),  # type: ignore[call-overload]
+        DtypeError,
+        r"^render: camera: expected a Camera, got View \(pass its .camera\)",
+    ),
+    "samples of a model": (
+        lambda: photograd.render(model(), camera(), spp=4),  # type: ignore[call-overload]
+        RangeError,
+        r"^render: spp: expected nothing with a Model.*, got 4 \(leave it out\)",
+    ),
+    "path of a scene": (
+        lambda: photograd.PathTracer("room.toml"),  # type: ignore[arg-type]
+        DtypeError,
+        r"^PathTracer: scene: expected a Scene, got str \(read_scene",
+    ),
+    "misspelled option": (
+        lambda: photograd.fit("photos", step=20),
+        DtypeError,
+        r"^fit: step: expected an option of FitOptions.* \(did you mean 'steps'\?\)",
+    ),
+    "unknown representation": (
+        lambda: photograd.fit("photos", "sky", steps=3),
+        RangeError,
+        r"^Fit: representation: expected .*'dense_grid'.*'textured_mesh', got 'sky'$",
+    ),
+    "path of a capture": (
+        lambda: Fit.start("photos", FitOptions()),  # type: ignore[arg-type]
+        DtypeError,
+        r"^Fit.start: capture: expected a Capture, got str \(load_capture reads one\)",
+    ),
+    "path of a model": (
+        lambda: photograd.fit("photos", "octree_sh", start_from="model"),  # type: ignore[arg-type]
+        DtypeError,
+        r"^fit: start_from: expected a Model, got str \(load_model reads one\)",
+    ),
+    "group": (
+        lambda: Fit.start(scene.capture(), scene.options()).mean_gradient("density", 8),
+        RangeError,
+        r"^Fit.mean_gradient: group: expected .*, got 'density' \(choose from values\)",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_what_is_refused(name: str) -> None:
+    call, error, words = CALLS[name]
+    with pytest.raises(error, match=words):
+        call()
+
+
+@pytest.fixture
+def sky() -> Iterator[type[Representation]]:
+    class Sky(Representation):
+        name, capabilities = "sky", frozenset({"rays"})
+        example = example_batch = param_groups = render = render_backward = print  # type: ignore[assignment]
+
+    yield register(Sky)
+    del REGISTERED["sky"]
+
+
+@pytest.mark.usefixtures("sky")
+def test_a_registered_class_that_cannot_be_fitted_is_told_what_to_become() -> None:
+    with pytest.raises(RangeError, match=r"representation: .*got 'sky' \(derive .* Fittable"):
+        photograd.fit("photos", "sky", steps=3)
+
+
+@pytest.mark.parametrize("lacking", ["opacity", "depth"])
+def test_a_rendering_without_opacity_or_depth_is_not_drawn(lacking: str) -> None:
+    class Half(DenseGrid):
+        def render(self, batch: Any, **named: Any) -> Any:
+            whole, context = super().render(batch, **named)
+            return Outputs(**{**vars(whole), lacking: None}), context
+
+    with pytest.raises(ShapeError, match=rf"^dense_grid.render: {lacking}: .* got None \(return"):
+        render_field(Half(np.ones((4, 4, 4, 4)), scene.truth().policy), camera(), 0.0)
+
+
+def test_fit_lists_its_options_once() -> None:
+    text, described = (inspect.getdoc(thing) or "" for thing in (photograd.fit, FitOptions))
+    names = [field.name for field in fields(FitOptions) if field.name != "representation"]
+    assert all(text.count(f"\n    {name} (") == 1 for name in names)
+    assert "\n    resolution (int, default 128): voxels along the longest edge" in text
+    long = "transmittance below which a ray ends; the discarded light is below this fraction."
+    assert long in described
+    assert long in text
+    assert text.index("\n\nReturns:") > text.index("\n    ssim_weight")
+
+
+def test_a_fit_runs_in_a_folder_named_by_a_text(tmp_path: Path) -> None:
+    Fit.start(scene.capture(), scene.options(steps=1)).run(str(tmp_path / "model"))
+    assert photograd.load_model(tmp_path / "model").history.shape == (1, 3)
+
+
+def test_an_option_that_is_none_keeps_its_default() -> None:
+    assert options_for("gaussians", steps=None) == options_for("gaussians")
