@@ -33,8 +33,8 @@ def _slope(x, y):
 
 
 def fig1_two_errors(module):
-    """Error of difference quotients against eps."""
-    points = np.linspace(0.3, 1.1, 9)  # the mean over these evens out rounding
+    """Error of finite differences against eps."""
+    points = np.linspace(0.3, 1.1, 9)  # the mean over these averages rounding errors
     eps = 10.0 ** np.arange(-13.0, -0.4, 0.25)
 
     def values(y):
@@ -53,7 +53,7 @@ def fig1_two_errors(module):
             _slope(eps[wide], central[wide]), 1.9, 2.1, red="forward_difference"
         ),
         "forward differences have slope 1": Fact(
-            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="the twin, computed here"
+            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="computed here"
         ),
         "below 1e-8 the error grows as 1/eps": Fact(
             _slope(eps[narrow], central[narrow]), -1.3, -0.7, red="missing_half"
@@ -71,16 +71,16 @@ def fig1_two_errors(module):
     axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
     axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
     axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
-    axes.annotate("rounding: slope -1", (3e-11, 2e-4), color=style.GUIDE)
+    axes.annotate("rounding error: slope -1", (3e-11, 2e-4), color=style.GUIDE)
     axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
-    axes.set_title("derivative of exp from its values, nine points between 0.3 and 1.1")
+    axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
     axes.legend(loc="lower left")
     axes.grid(visible=True)
     return figure, facts
 
 
 def fig2_step_lengths(module):
-    """A parabola: distance to the minimum for five step lengths."""
+    """A parabola: distance to the minimum for five learning rates."""
     n = 24
     reaches = (0.2, 1.0, 1.8, 2.0, 2.1)
     walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
@@ -97,7 +97,7 @@ def fig2_step_lengths(module):
         ),
         "at 2 the distance stays 1": Fact((np.abs(x[2.0]) == 1.0).all(), red="clipped_step"),
         "at 2.1 it has grown tenfold": Fact(np.abs(x[2.1][-1]), 9.0, 11.0, red="clipped_step"),
-        "only 2.1 is said to be wrong": Fact(
+        "only 2.1 is flagged as wrong": Fact(
             [w[2] for w in walks.values()] == [False] * 4 + [True], red="clipped_step"
         ),
     }
@@ -105,7 +105,7 @@ def fig2_step_lengths(module):
     steps = np.arange(n + 1)
     looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
     for r, (color, mark) in looks.items():
-        size = 5.5 if r == 0.2 else 3.2  # seen behind 1.8
+        size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
         left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
         right.semilogy(
             steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
@@ -125,7 +125,7 @@ def fig2_step_lengths(module):
 
 
 def fig3_two_valleys(module):
-    """A function with two minima: start and step length decide."""
+    """A function with two minima: start and learning rate decide."""
 
     def f(x):
         return float((np.float64(x) * x - 1.0) ** 2 + 0.2 * x)
@@ -139,18 +139,20 @@ def fig3_two_valleys(module):
     long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
     near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
     facts = {
-        "from 0 the walk ends on the left": Fact(
+        "from 0 the run ends on the left": Fact(
             short_left[-1] - left_end, -1e-6, 1e-6, red="uphill"
         ),
         "from 0.1 it ends on the right": Fact(
             short_right[-1] - right_end, -1e-6, 1e-6, red="uphill"
         ),
-        "the hump lies between 0 and 0.1": Fact(hump, 0.0, 0.1, held="a root of the derivative"),
-        "the walk from 0 ends deeper": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
+        "the local maximum lies between 0 and 0.1": Fact(
+            hump, 0.0, 0.1, held="a root of the derivative"
+        ),
+        "the run from 0 ends lower": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
         "from 1.7 with 0.05 it ends on the right": Fact(
             near[-1] - right_end, -1e-6, 1e-6, red="no_tau"
         ),
-        "from 1.7 with 0.15 the first step crosses the hump": Fact(
+        "from 1.7 with 0.15 the first step crosses the maximum": Fact(
             long[1] < hump, red="clipped_step"
         ),
         "and ends on the left": Fact(long[-1] - left_end, -1e-6, 1e-6, red="stale_gradient"),
@@ -159,7 +161,7 @@ def fig3_two_valleys(module):
     figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
     shown = (
         (
-            "short steps, tau = 0.05",
+            "small learning rate, tau = 0.05",
             (short_left, BLUE, "o", "from 0"),
             (short_right, ORANGE, "s", "from 0.1"),
         ),
@@ -192,7 +194,7 @@ START = np.array([-2.0, 0.55])
 
 
 def fig4_zigzag(module):
-    """A long valley: zig-zag, best fixed step, momentum."""
+    """An ill-conditioned quadratic: zig-zag, best learning rate, momentum."""
 
     def f(x):
         return float(0.5 * x @ (BOWL * x))
@@ -213,11 +215,11 @@ def fig4_zigzag(module):
         "the steep coordinate changes sign in each step": Fact(
             (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all(), red="unit_steps"
         ),
-        "the flat one creeps along one side": Fact((zigzag[:, 0] < 0.0).all(), red="unit_steps"),
+        "the flat one converges from one side": Fact((zigzag[:, 0] < 0.0).all(), red="unit_steps"),
         "the factor per step is 19/21 within 2 %": Fact(
             rate * 21.0 / 19.0, 0.98, 1.02, red="aliased_trail"
         ),
-        "just above the bound the walk goes wrong": Fact(wrong[2], red="unit_steps"),
+        "just above the bound it diverges": Fact(wrong[2], red="unit_steps"),
         "after 40 steps momentum is sixty thousand times nearer": Fact(
             size["fixed"][-1] / size["ball"][-1], 5.5e4, 6.5e4, red="forgets_velocity"
         ),
@@ -234,7 +236,7 @@ def fig4_zigzag(module):
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
     figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
     for axes, walk, color, mark, title in (
-        (a, fixed, ORANGE, "s", "fixed step 2 / (1 + 20)"),
+        (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
         (b, ball, BLUE, "o", "momentum, beta = 0.403"),
     ):
         axes.contour(
@@ -256,7 +258,7 @@ def fig4_zigzag(module):
 
 
 def fig5_adam(module):
-    """Adam's first steps, and what happens when the loss is measured in other units."""
+    """The first steps of Adam, and the effect of other units of the loss."""
     n, tau = 200, 0.05
 
     def grad_of(scale):
@@ -279,7 +281,7 @@ def fig5_adam(module):
         "in no coordinate is a step longer than 1.2 tau": Fact(
             lengths[1.0].max() / tau, 0.0, 1.2, red="no_second_correction"
         ),
-        "gradient descent at its best step is nearer all the way": Fact(
+        "gradient descent at its best rate is nearer all the way": Fact(
             (size["gradient descent"][1:] < size["Adam"][1:]).all(), red="unit_steps"
         ),
         "after 100 steps it is a hundred times nearer": Fact(
@@ -288,7 +290,7 @@ def fig5_adam(module):
         "after 200 steps it is within 0.001 of the minimum": Fact(
             np.linalg.norm(walks[1.0][-1]), 0.0, 1e-3, red="swapped_betas"
         ),
-        "the flat and the steep way get equal first steps": Fact(
+        "the flat and the steep coordinate have equal first steps": Fact(
             first[0] / first[1], 0.999, 1.001, red="shared_scale"
         ),
     }
@@ -309,12 +311,12 @@ def fig5_adam(module):
     )
     a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
     a.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate")
-    a.set_title("the way")
+    a.set_title("iterates")
     a.legend(loc="lower right")
     b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
     b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
     b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
-    b.set_title("Adam's steps")
+    b.set_title("steps of Adam")
     b.legend(loc="upper right")
     c.semilogy(size["Adam"], color=BLUE)
     c.semilogy(size["gradient descent"], color=ORANGE)
@@ -326,7 +328,7 @@ def fig5_adam(module):
 
 
 def fig6_armijo(module):
-    """Step lengths tried by backtracking along one direction."""
+    """Step sizes tried by backtracking along one direction."""
 
     def f(x):
         return float(np.log(np.cosh(3.0 * x[0])) + 0.2 * x[0] ** 2)
@@ -358,7 +360,7 @@ def fig6_armijo(module):
             len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9),
             red="ignores_tau0",
         ),
-        "the last try is the answer": Fact(
+        "the last try is the result": Fact(
             tau / tried[-1], 0.999999, 1.000001, red="one_too_short"
         ),
         "the loss falls": Fact(along(tau) < f(x), red="wrong_promise"),
@@ -377,11 +379,11 @@ def fig6_armijo(module):
         color=RED_,
         ms=8,
         mec="white",
-        label="tried and refused",
+        label="tried and rejected",
     )
     axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
     axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
-    axes.set(xlabel="step length tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
+    axes.set(xlabel="step size tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
     axes.legend(loc="upper center", ncols=2)
     axes.grid(visible=True)
     return figure, facts

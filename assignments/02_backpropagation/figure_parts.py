@@ -21,7 +21,7 @@ def graph_axes(figure, left, top, width, height):
 
 
 def circle(axes, at, label, value="", gradient=""):
-    """A node: what it is inside, its value above and its gradient below."""
+    """A node: its label inside, its value above and its gradient below."""
     box = {"boxstyle": "circle,pad=0.35", "fc": "white", "ec": INK, "lw": 1.4}
     axes.text(*at, label, ha="center", va="center", fontsize=TEXT + 1.5, zorder=4, bbox=box)
     bold = {"ha": "center", "fontsize": TEXT, "fontweight": "bold"}
@@ -30,7 +30,7 @@ def circle(axes, at, label, value="", gradient=""):
 
 
 def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
-    """An arrow from an input to its user, with a text beside it."""
+    """An arrow from an input to its user, with a label beside it."""
     axes.add_patch(
         FancyArrowPatch(
             start,
@@ -70,7 +70,7 @@ def key(axes, x, y):
 
 
 def slopes_of(user, source):
-    """Slopes noted by `user` for each of its uses of `source`."""
+    """Local derivatives stored by `user` for each of its uses of `source`."""
     return [slope for node, slope in user.inputs if node is source]
 
 
@@ -80,13 +80,13 @@ def first_slope(user, source):
 
 
 def recorded_uses(module, root):
-    """How many contributions `backward` adds up, and how many values there are."""
+    """The number of contributions that `backward` adds, and the number of values."""
     order = module.topo_order(root)
     return sum(len(node.inputs) for node in order), len(order)
 
 
 def levels(root):
-    """Level by level from the root: the order that is not good enough, root last."""
+    """Level by level from the root: the order that fails, root last."""
     order, seen = [root], {root}
     for node in order:
         for source, _ in node.inputs:

@@ -25,7 +25,7 @@ WIDTH = 6.6  # inches: 726 pixels
 
 
 def fig1_worked_graph(module):
-    """(x + y) z with values, slopes and gradients."""
+    """(x + y) z with values, local derivatives and gradients."""
     x, y, z = module.Value(3.0), module.Value(4.0), module.Value(5.0)
     a = x + y
     f = a * z
@@ -67,12 +67,12 @@ def fig2_cost(module):
     share = np.array(backward) / np.array(forward)
     figure = new_figure(WIDTH, 2.9)
     left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-    left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="differences")
+    left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="finite differences")
     left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
     left.set(
         title="work for a gradient",
         xlabel="inputs",
-        ylabel="operations for each value",
+        ylabel="operations per value",
         ylim=(0.3, 2000),
     )
     right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
@@ -85,7 +85,7 @@ def fig2_cost(module):
         axes.grid(True, axis="y")
     facts = {
         "backward adds less than two contributions for each value": Fact(share.max() < 2.0),
-        "and hardly depends on the number of inputs": Fact(share[-1] / share[1], 0.8, 1.25),
+        "and the number of inputs has little effect": Fact(share[-1] / share[1], 0.8, 1.25),
         "a diamond adds four contributions": Fact(np.allclose(ladder, 4 * np.array(rungs))),
         "twelve diamonds have over 50 times as many paths": Fact(paths[-1] > 50 * ladder[-1]),
     }
@@ -93,7 +93,7 @@ def fig2_cost(module):
 
 
 def fig3_kink(module):
-    """max(x, 2): the value, and its derivative by the engine and by differences."""
+    """max(x, 2): the value, and its derivative from the engine and by finite differences."""
     where = np.concatenate([np.linspace(1.0, 1.99, 50), [2.0], np.linspace(2.01, 3.0, 50)])
     h, slopes, values = 0.2, [], []
     for number in where:
@@ -121,7 +121,7 @@ def fig3_kink(module):
     right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
     right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
     right.set(
-        title="its derivative by x",
+        title="its derivative with respect to x",
         xlabel="x",
         xticks=[1, 2, 3],
         yticks=[0, 0.5, 1],
@@ -134,8 +134,8 @@ def fig3_kink(module):
             (slopes[where < 2] == 0).all() and (slopes[where > 2] == 1).all()
         ),
         "at the tie x gets 0 and the other input 1": Fact(x.grad == 0.0 and two.grad == 1.0),
-        "differences give 1/2 at the tie": Fact(steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
-        "both agree further than a step from the kink": Fact(
+        "finite differences give 1/2 at the tie": Fact(steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
+        "both agree farther than a step from the kink": Fact(
             np.allclose(slopes[far], steps[far], atol=1e-9)
         ),
     }
@@ -168,7 +168,7 @@ def fig4_order(module):
         parts.draw_order(parts.graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
-        "the engine's gradient agrees with differences": Fact(
+        "the engine's gradient agrees with finite differences": Fact(
             gradients["every user first"]["x"] / right, 1 - 1e-6, 1 + 1e-6
         ),
         "in the engine's order users come first": Fact(
@@ -223,7 +223,7 @@ def fig5_uses_add_up(module):
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
         "the value is 34": Fact(f.data, 34.0, 34.0),
-        "the uses bring 1, 5 and 5": Fact(by_sum == 1.0 and by_square == [5.0, 5.0]),
+        "the uses contribute 1, 5 and 5": Fact(by_sum == 1.0 and by_square == [5.0, 5.0]),
         "x gets 11": Fact(x.grad, 11.0, 11.0),
         "the tangent of slope 11 touches": Fact(bend < 2e-4),
         "a line of slope 1 cuts through": (
@@ -235,7 +235,7 @@ def fig5_uses_add_up(module):
 
 
 def fig6_steps(module):
-    """What grad_check says of a right gradient and of one that is 1 % off, by the step."""
+    """The error that grad_check reports for a right gradient and for one 1 % too long."""
     place = np.array([0.3, -0.8, 1.2, 0.5])
 
     def f(x, factor=1.0):
@@ -256,11 +256,11 @@ def fig6_steps(module):
     figure = new_figure(WIDTH, 3.0)
     axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
     axes.axhline(1e-6, color=DARK_RED, lw=1.2)
-    axes.text(3.5, 1e-6, "accepted below", color=DARK_RED, fontsize=SMALL, va="center")
+    axes.text(3.5, 1e-6, "passes below", color=DARK_RED, fontsize=SMALL, va="center")
     axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
     axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
     axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
-    axes.text(3.5, 1e-2, "gradient 1 % off", color=BLUE, fontsize=SMALL, va="center")
+    axes.text(3.5, 1e-2, "gradient 1 % too long", color=BLUE, fontsize=SMALL, va="center")
     axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
     axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
     axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
@@ -272,7 +272,7 @@ def fig6_steps(module):
     }
     facts = {
         "at 1e-5 a right gradient is a thousand times below the limit": Fact(right[at[-5]] < 1e-9),
-        "a step of 1e-12 would refuse it": Fact(right[at[-12]] > 1e-6),
+        "with a step of 1e-12 it would fail": Fact(right[at[-12]] > 1e-6),
         "ten times the step, a hundred times the truncation": Fact(
             right[at[-2]] / right[at[-3]], 90.0, 110.0
         ),
@@ -282,7 +282,7 @@ def fig6_steps(module):
 
 
 def fig7_picture(module):
-    """The gradient of a picture's error, drawn as a picture."""
+    """The gradient of the error of an image, shown as an image."""
     row, column = np.mgrid[0:12, 0:16]
     target = 0.2 + 0.6 * ((row - 5.5) ** 2 + (column - 7.5) ** 2 < 17)
     start = np.full(target.shape, 0.45)
@@ -307,14 +307,14 @@ def fig7_picture(module):
     slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
     figure = new_figure(WIDTH, 1.85)
     for k, (name, picture) in enumerate(
-        (("texels", start), ("should be seen", target), ("after one step", after))
+        (("texels", start), ("target", target), ("after one step", after))
     ):
         axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
         axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
         axes.set_title(name, fontsize=SMALL)
         axes.set(xticks=[], yticks=[])
     top = float(np.abs(by_pixel).max()) or 1.0
-    for k, (name, picture) in enumerate((("dL / d seen", by_pixel), ("dL / d texels", by_texel))):
+    for k, (name, picture) in enumerate((("dL / d pixels", by_pixel), ("dL / d texels", by_texel))):
         axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
         image = axes.imshow(
             picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
@@ -327,12 +327,14 @@ def fig7_picture(module):
     bar.set_ticks([-0.5, 0.0, 0.5])
     bar.ax.tick_params(labelsize=8)
     facts = {
-        "negative where the picture is too dark": Fact((by_texel[4:8, 6:10] < 0).all()),
+        "negative where the image is too dark": Fact((by_texel[4:8, 6:10] < 0).all()),
         "positive where it is too bright": Fact((by_texel[[0, -1]] > 0).all()),
-        "by what is seen there are two values": Fact(len(np.unique(by_pixel.round(12))) == 2),
-        "by the texels there are more": Fact(len(np.unique(by_texel.round(12))) > 2),
+        "with respect to pixels there are two values": Fact(
+            len(np.unique(by_pixel.round(12))) == 2
+        ),
+        "with respect to texels there are more": Fact(len(np.unique(by_texel.round(12))) > 2),
         "their sums agree": Fact(by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
-        "it agrees with differences": Fact(by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
+        "it agrees with finite differences": Fact(by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
         "a step against it lowers the loss": Fact(loss_of(after)[0].data / loss.data, 0.0, 0.9),
     }
     return figure, facts

@@ -14,7 +14,7 @@ from photograd_course.viz.style import RED as CRIMSON
 
 
 def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
-    """Six texels, and the surface that bilinear sampling spans between their centers."""
+    """Six texels, and their bilinear interpolation."""
     T = np.array([[0.2, 0.9, 0.5], [0.7, 0.1, 1.0]])[:, :, None]
     fine = (240, 360)
     surface = module.bilinear_sample(T, _centers(fine)).reshape(fine)
@@ -63,7 +63,7 @@ def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
-    """Three samples read the texture; their numbers go back to the texels that they read."""
+    """Three samples of a texture; their derivatives are scattered to the texels."""
     shape = (4, 6)
     uv = np.array([[0.30, 0.30], [0.71, 0.58], [0.985, 0.93], [0.71, 0.58]])
     g = np.array([[1.0], [-0.7], [0.8], [-0.3]])
@@ -75,14 +75,14 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     x = np.random.default_rng(3).uniform(-1, 1, (*shape, 1))
     left, right = np.vdot(module.bilinear_sample(x, uv), g), np.vdot(x[:, :, 0], back)
     facts: Facts = {
-        "nine texels get a share": Fact(np.count_nonzero(back), 9, 9),
-        "the shares add up to g": Fact(back.sum() - g.sum(), -1e-12, 1e-12),
-        "two samples at one place add up": Fact(np.allclose(back, alone, atol=1e-12)),
+        "nine texels have a derivative": Fact(np.count_nonzero(back), 9, 9),
+        "the derivatives sum to the sum of g": Fact(back.sum() - g.sum(), -1e-12, 1e-12),
+        "two samples at one point are summed": Fact(np.allclose(back, alone, atol=1e-12)),
         "the corner texel gets all of its sample": Fact(back[3, 5], 0.8 - 1e-12, 0.8 + 1e-12),
         "<S x, g> = <x, S* g>": Fact(left - right, -1e-12, 1e-12),
     }
     figure, panels = subplots(7.0, 2.75, 1, 2)
-    titles = ("samples with their g", "adjoint: what each texel gets")
+    titles = ("samples with their g", "adjoint: derivatives of texels")
     for axes, title in zip(panels, titles, strict=True):
         _grid(axes, shape)
         axes.set_title(title)
@@ -116,7 +116,7 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
-    """What is missing in a half-recovered texture, and what one step adds."""
+    """The error of a half-recovered texture, and one step."""
     truth = landscape(48, 64)
     uv = np.random.default_rng(1).random((40_000, 2))
     target = module.bilinear_sample(truth, uv)
@@ -131,7 +131,7 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
         "99 % of what misses by more than 0.05 moves the right way": Fact(
             agree[large].mean(), 0.99, 1
         ),
-        "the step overshoots: it adds 1.6 times what is missing": Fact(share, 1.4, 1.8),
+        "the step overshoots: it is 1.6 times the difference": Fact(share, 1.4, 1.8),
         "gradient and residual look alike": Fact(_cosine(missing, added), 0.95, 0.999),
         "the step brings the texture closer": Fact(
             np.linalg.norm(missing - added) / np.linalg.norm(missing), 0, 0.75
@@ -143,7 +143,7 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
     for axes, (values, title) in zip(panels[0], shown, strict=True):
         axes.imshow(_screen(values), interpolation="nearest")
         axes.set_title(title)
-    signed = ((missing, "what is missing: truth − T"), (added, "what one step adds: −τ ∂L/∂T"))
+    signed = ((missing, "difference: truth − T"), (added, "one step: −τ ∂L/∂T"))
     colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
     for axes, (values, title) in zip(panels[1], signed, strict=True):
         image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
@@ -162,7 +162,7 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
-    """Error of the texture against steps, for step lengths around the largest stable one."""
+    """PSNR of the texture against steps, for learning rates around the largest stable one."""
     rng = np.random.default_rng(0)
     truth, uv = rng.random((32, 32, 1)), rng.random((20_000, 2))
     target = module.bilinear_sample(truth, uv)
@@ -205,7 +205,7 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
-    """A picture recovered from scattered samples, with a patch that nobody measured."""
+    """An image recovered from random samples, with a patch that was not measured."""
     truth = landscape(48, 72)
     rng = np.random.default_rng(2)
     uv = rng.random((53_200, 2))
@@ -221,17 +221,17 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
     worst_to_rim = float(np.hypot(*(np.argwhere(unseen) - worst).T).min())
     samples = _mean_of_samples(uv[:1500], target[:1500], truth.shape)
     facts: Facts = {
-        "over 95 % of what was measured is right to 0.02": Fact((error < 0.02).mean(), 0.95, 1),
-        "the worst lies at the rim of the patch": Fact(worst_to_rim, 0, 1.5),
+        "over 95 % of the measured values are right to 0.02": Fact((error < 0.02).mean(), 0.95, 1),
+        "the worst lies at the border of the patch": Fact(worst_to_rim, 0, 1.5),
         "nearly 50,000 samples": Fact(len(uv), 49_000, 51_000),
-        "unseen texels are as they were": Fact(np.array_equal(T[unseen], start[unseen])),
+        "unseen texels do not change": Fact(np.array_equal(T[unseen], start[unseen])),
         "unseen texels lie in the patch": Fact(unseen.mean(), 0.04, 0.07),
         "the loss falls with every step": Fact((np.diff(losses) < 0).all()),
-        "after 3 steps noise is still to be seen": Fact(psnr(early[seen], truth[seen]), 12, 32),
+        "after 3 steps noise is still visible": Fact(psnr(early[seen], truth[seen]), 12, 32),
         "over half of the error is gone by then": Fact(
             np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen]), 0.2, 0.5
         ),
-        "over a third of the dark half's values are below zero then": Fact(
+        "over a third of the values of the dark half are negative then": Fact(
             (early[24:][seen[24:]] < 0).mean(), 1 / 3, 0.6
         ),
     }
@@ -250,7 +250,7 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
-    """A fine pattern seen from afar: every fourth texel, and the mip level of that size."""
+    """A fine pattern minified: every fourth texel, and the mip level of that size."""
     i, j = np.mgrid[0:128, 0:128] / 128
     rings = (0.5 + 0.5 * np.cos(150 * (i**2 + j**2)))[:, :, None]
     levels = module.build_mips(rings)
@@ -261,11 +261,11 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
         "each level has the same mean": Fact(
             max(abs(float(level.mean() - rings.mean())) for level in levels), 0, 1e-12
         ),
-        "picked texels flicker where the rings are fine": Fact(picked[fine_half].std(), 0.3, 0.4),
+        "picked texels alias where the rings are fine": Fact(picked[fine_half].std(), 0.3, 0.4),
         "about half of the false contrast remains where rings are of medium width": Fact(
             coarse[6:14, 6:14].std() / picked[6:14, 6:14].std(), 0.4, 0.65
         ),
-        "the mip level is even there": Fact(coarse[fine_half].std(), 0, 0.05),
+        "the mip level is uniform there": Fact(coarse[fine_half].std(), 0, 0.05),
     }
     figure = Figure(figsize=(7.0, 2.6), layout="constrained")
     shown = ((rings, "texture, 128 × 128"), (picked, "every 4th texel"), (coarse, "mip level 2"))
@@ -277,7 +277,7 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def landscape(rows: int, columns: int) -> np.ndarray:
-    """Hills in haze over a lake, drawn by formulas: linear values (rows, columns, 3) in [0, 1]."""
+    """Hills in haze over a lake, by formulas: linear values (rows, columns, 3) in [0, 1]."""
     rng = np.random.default_rng(11)
     u, v = ((np.arange(n) + 0.5) / n for n in (columns, rows))
     down = np.broadcast_to(v[:, None, None], (rows, columns, 1))
@@ -301,7 +301,7 @@ def landscape(rows: int, columns: int) -> np.ndarray:
 
 
 def _ridge(rng: np.random.Generator, u: np.ndarray, frequency: float) -> np.ndarray:
-    """A rough line in [-1, 1] or so: sines of ever finer period."""
+    """A rough line in about [-1, 1]: sines of decreasing period."""
     line = np.zeros(u.shape)
     for octave in range(5):
         line += 0.45**octave * np.sin(2 * np.pi * (frequency * 1.9**octave * u + rng.random()))
@@ -317,7 +317,7 @@ def _clouds(rng: np.random.Generator, rows: int, columns: int) -> np.ndarray:
 
 
 def _mean_of_samples(uv: np.ndarray, values: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Samples as dots on white, for the eye only."""
+    """Samples as dots on white, for display only."""
     picture = np.ones(shape)
     cell = np.clip((uv[:, ::-1] * shape[:2]).astype(int), 0, np.array(shape[:2]) - 1)
     picture[cell[:, 0], cell[:, 1]] = values
@@ -334,7 +334,7 @@ def _cosine(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _screen(linear: np.ndarray) -> np.ndarray:
-    """Linear light as a screen wants it."""
+    """Linear radiance, gamma-encoded for display."""
     return np.clip(linear, 0, 1) ** (1 / 2.2)
 
 

@@ -17,7 +17,7 @@ LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5),
 
 
 def fig1_furnace(module):
-    """What white materials return, by the cosine of the viewer."""
+    """Directional albedo of white materials, by the cosine of the viewer."""
     cosines = np.concatenate([[0.02, 0.05], np.linspace(0.1, 1.0, 19)])
 
     def of(model, *given, cosines=cosines):
@@ -31,10 +31,10 @@ def fig1_furnace(module):
         )
     plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
     facts = {
-        "mirrors of roughness 1 return 1 - ln 2 straight up": Fact(
+        "microfacets of roughness 1 return 1 - ln 2 straight up": Fact(
             mirrors[1.0][-1] - 1 + np.log(2), -1e-9, 1e-9, red="lobe_printed"
         ),
-        "no mirror returns more than came": Fact(
+        "no microfacets return more than arrives": Fact(
             max(float(values.max()) for values in mirrors.values()), 0.3, 1.0, red="lobe_no_masking"
         ),
         "Burley's, roughness 1, returns 1.46 at 0.05": Fact(
@@ -49,7 +49,7 @@ def fig1_furnace(module):
         "as printed, Cook and Torrance's returns four times as much": Fact(
             np.abs(printed / right - 4).max(), 0, 1e-9, held="about a model that is given"
         ),
-        "repaired it nowhere returns more than came": Fact(
+        "corrected it nowhere returns more than arrives": Fact(
             right.max(), 0.8, 1.0, red="furnace_viewer_cosine"
         ),
         "white plastic of roughness 0.6 returns 1.06 at 0.1": Fact(
@@ -60,12 +60,12 @@ def fig1_furnace(module):
     axes = panels[0]
     looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
     for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
-        axes.plot(cosines, values, look, color=color, label=f"mirrors, roughness {r:g}")
+        axes.plot(cosines, values, look, color=color, label=f"microfacets, roughness {r:g}")
     for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
         axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
     axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
     note(axes, "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), ha="right")
-    axes.set(title="facets that mirror all, and Burley's white", ylim=(0, 1.6))
+    axes.set(title="microfacets with F = 1, and Burley's white", ylim=(0, 1.6))
     axes.legend(loc="lower left", fontsize=6.5)
     axes = panels[1]
     axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
@@ -76,12 +76,12 @@ def fig1_furnace(module):
         axes.axhline(1, color=FRAME, linewidth=0.8)
         axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
         axes.spines[["top", "right"]].set_visible(False)
-    panels[0].set_ylabel("share of the light returned")
+    panels[0].set_ylabel("directional albedo")
     return figure, facts
 
 
 def fig2_lobes(module):
-    """Lobes of light from 45 degrees: Phong's, and facets of growing roughness."""
+    """Lobes of light from 45 degrees: Phong's, and GGX of increasing roughness."""
     angle = np.radians(np.linspace(-89.5, 89.5, 359))
     wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
     wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(angle), 1))
@@ -116,7 +116,7 @@ def fig2_lobes(module):
     for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
         if r > 0.4:
             panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
-    panels[0].set(title="facets of GGX", ylabel="D V [1/sr]", ylim=(0, 1.5))
+    panels[0].set(title="GGX lobes", ylabel="D V [1/sr]", ylim=(0, 1.5))
     panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
     panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
     panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
@@ -129,7 +129,7 @@ def fig2_lobes(module):
 
 
 def fig3_samples(module):
-    """Samples over their density, and weights of two ways to draw."""
+    """Samples over their density, and weights of two samplers."""
     rng = np.random.default_rng(7)
     r, n = 0.6, 4000
     panels_of, below = [], []
@@ -149,10 +149,10 @@ def fig3_samples(module):
         "the mean weight is the albedo within four standard errors": Fact(
             abs(weights.mean() - right) / spread, 0, 4, red="sample_half_ball"
         ),
-        "directions drawn evenly are more than three times as noisy": Fact(
+        "uniform directions are more than three times as noisy": Fact(
             plain.std() / weights.std(), 3, 100, red="pdf_all_facets"
         ),
-        "for both viewers about a tenth leads below the surface": Fact(
+        "for both viewers about a tenth lies below the surface": Fact(
             np.abs(np.array(below) - 0.1).max(), 0, 0.02, red="sample_all_facets"
         ),
     }
@@ -172,8 +172,8 @@ def fig3_samples(module):
         axes.set_ylabel("y")
     axes = panels[2]
     bins = np.linspace(0, 4, 41)
-    axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="drawn evenly")
-    axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible facets")
+    axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="uniform sampling")
+    axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible normals")
     axes.axvline(right, color=CRIMSON, linewidth=1)
     axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
     axes.yaxis.set_minor_formatter(NullFormatter())
@@ -183,7 +183,7 @@ def fig3_samples(module):
 
 
 def fig4_blend(module):
-    """White of roughness 0.5, seen from 0.6: lobes blended, and what goes into them blended."""
+    """White of roughness 0.5, seen from 0.6: BRDFs blended, and f0 blended."""
     metalness, view = np.linspace(0, 1, 11), np.array([0.6])
 
     def premixed(m):
@@ -211,17 +211,17 @@ def fig4_blend(module):
         ),
     }
     figure, axes = subplots(6.0, 2.7)
-    axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="lobes blended")
+    axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="BRDFs blended")
     axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
     axes.axhline(1, color=FRAME, linewidth=0.8)
-    axes.set(xlabel="metalness", ylabel="share of the light returned", ylim=(0.6, 1.05))
+    axes.set(xlabel="metalness", ylabel="directional albedo", ylim=(0.6, 1.05))
     axes.legend(loc="lower left", fontsize=7)
     axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
 def fig5_chart(module):
-    """Balls of the material: roughness to the right, metalness downwards."""
+    """Balls of the material: roughness to the right, metalness downward."""
     color = np.array([0.9, 0.45, 0.12])
     roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
     size = 124
@@ -240,7 +240,7 @@ def fig5_chart(module):
         "the metal's highlight has the base color": Fact(
             np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
         ),
-        "the varnish's highlight is nearly white": Fact(
+        "the coating's highlight is nearly white": Fact(
             white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
         ),
         "the metal's highlight gets darker to the right": Fact(
@@ -262,7 +262,7 @@ def fig5_chart(module):
 
 
 def fig6_by_roughness(module):
-    """A plastic ball, its derivative by roughness, and what a step does."""
+    """A plastic ball, its derivative with respect to roughness, and a finite difference."""
     size, r, step = 150, 0.35, 0.02
     color = np.array([0.75, 0.12, 0.08])
     inside, wo, frame = _frames(size)
@@ -303,7 +303,7 @@ def fig6_by_roughness(module):
     top = float(np.quantile(np.abs(slope), 0.99))
     for axes, values, title in (
         (panels[1], slope, "∂ brightness / ∂ roughness"),
-        (panels[2], change / step, "difference, step 0.02"),
+        (panels[2], change / step, "finite difference, step 0.02"),
     ):
         field = np.full((size, size), np.nan)
         field[inside] = values
@@ -343,7 +343,7 @@ def _unit(v):
 
 
 def _frames(size):
-    """A ball seen from +z: where it is, and for its pixels wo and the frames (N, 3, 3)."""
+    """A ball seen from +z: its mask, and for its pixels wo and the frames (N, 3, 3)."""
     x = (np.arange(size) + 0.5) / size * 2.06 - 1.03
     right, up = np.meshgrid(x, -x)
     inside = right**2 + up**2 < 0.998

@@ -8,14 +8,14 @@ import numpy as np
 from photograd_course.viz.handout import Array
 
 STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
-# The mistakes of figure 4, in the words of its caption.
-LEFT_OUT, ADDED, NO_STEP = "hidden part left out", "hidden part added", "without dt"
-OWN_LIGHT, NO_EXP = "own light among the hidden", "σ dt for opacity"
-TAKES_IN = "T takes in the step"
+# The mistakes of figure 4, as its caption names them.
+LEFT_OUT, ADDED, NO_STEP = "no occlusion term", "occlusion term added", "without dt"
+OWN_LIGHT, NO_EXP = "own light in occlusion", "σ dt for opacity"
+TAKES_IN = "T includes the step"
 
 
 def two_clouds() -> tuple[Array, Array, Array]:
-    """Middles, extinctions and lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
+    """Midpoints, extinctions, lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
     dt = np.full(STEPS, 6.0 / STEPS)
     x = np.cumsum(dt) - dt / 2
     bump = [np.clip(1 - ((x - middle) / 1.0) ** 2, 0, None) for middle in (1.5, 4.5)]
@@ -23,7 +23,7 @@ def two_clouds() -> tuple[Array, Array, Array]:
 
 
 def weights(module: ModuleType, sigma: Array, dt: Array) -> tuple[Array, float]:
-    """Weights of a ray's steps, by giving each step a channel of its own; T_end."""
+    """Weights of the steps of a ray, with one channel per step; T_end."""
     steps = len(sigma)
     pixel, T_end = module.composite(sigma[None], np.eye(steps)[None], dt[None], np.zeros(steps))
     return pixel[0], float(T_end[0])
@@ -45,7 +45,7 @@ def transmittance(s: Array) -> Array:
 
 
 def cloud_pixel(way: object, n: int) -> float:
-    """The pixel of a smooth cloud of changing color by one way to weigh its steps."""
+    """The pixel of a smooth cloud of varying color by one way to weight its steps."""
     x = (np.arange(n) + 0.5) / n
     sigma = 3 * np.exp(-(((x - 0.4) / 0.3) ** 2))
     return float(way(sigma, 0.6 + 0.4 * np.sin(4 * x), 1 / n))  # type: ignore[operator]
@@ -59,7 +59,7 @@ def differences(
     background: Array,
     d_pixel: Array | None = None,
 ) -> Array:
-    """Central differences of <pixel, d_pixel> by each extinction; of one ray without its axis."""
+    """Central differences of <pixel, d_pixel> per extinction; of one ray without its axis."""
     d = np.ones((len(sigma), color.shape[2])) if d_pixel is None else d_pixel
     result = np.zeros(sigma.shape)
     for k in range(sigma.shape[1]):

@@ -28,9 +28,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "T never rises": Fact((np.diff(T) <= 0).all(), red="T_end_opacity"),
         "T ends at 0.02 or so": Fact(T_end, 0.01, 0.03, red="no_step"),
-        "weights and T_end add up to 1": Fact(
-            w.sum() + T_end, 1 - 1e-12, 1 + 1e-12, red="inclusive"
-        ),
+        "weights and T_end sum to 1": Fact(w.sum() + T_end, 1 - 1e-12, 1 + 1e-12, red="inclusive"),
         "the dense cloud has less weight than the thin one": Fact(
             w[dense].sum() / w[thin].sum(), 0.1, 0.95, red="no_occlusion"
         ),
@@ -44,7 +42,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
     panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
     panels[1].set(ylabel="T in front", ylim=(0, 1.05))
     panels[2].bar(x, w, width=dt, color=BLUE)
-    panels[2].set(ylabel="weight w", xlabel="distance from the eye [m]", xlim=(0, 6))
+    panels[2].set(ylabel="weight w", xlabel="distance from the camera [m]", xlim=(0, 6))
     for axes in panels:
         plain_axes(axes)
         axes.set_axisbelow(True)
@@ -52,7 +50,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
-    """Error of the pixel against the number of steps, for four ways to weigh a step."""
+    """Error of the pixel against the number of steps, for four weights of a step."""
     counts = 2 ** np.arange(3, 10)
     fine = 8192
     right = parts.cloud_pixel(lambda s, c, dt: parts.pixel_of(module, s, c, dt), fine)
@@ -94,7 +92,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
         "the shortcuts halve only": Fact(
             max(np.abs(slopes[names[k]] + 1).max() for k in (1, 2)), 0, 0.1, red="no_step"
         ),
-        "both are thousands of times as far off at 256 steps": Fact(
+        "both errors are thousands of times larger at 256 steps": Fact(
             shortcuts / max(at_256[names[0]], 1e-300), 2000, 1e6, red="inclusive"
         ),
         "without dt the error doubles": Fact(
@@ -121,7 +119,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative of a pixel by extinction along the ray of figure 1, in its two parts."""
+    """Derivative of a pixel with respect to extinction along the ray of figure 1, in two terms."""
     x, sigma, dt = parts.two_clouds()
     color = np.where(x < 3, 0.1, 0.95 - 0.12 * (x - 3))
     background = np.array([0.3])
@@ -130,7 +128,7 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         part[0] for part in module.composite_adjoint(*given, np.ones((1, 1)), np.zeros(1))
     )
     w = d_color[:, 0]
-    # The own part with all else black: nothing is hidden then.
+    # The own term, with everything else black: there is no occlusion term then.
     own = np.zeros(STEPS)
     for k in range(STEPS):
         alone = np.zeros((1, STEPS, 1))
@@ -144,15 +142,17 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     dark, bright = (sigma > 0.05) & (x < 3), (sigma > 0.05) & (x > 3)
     error = np.linalg.norm(d_sigma - differences) / np.linalg.norm(differences)
     facts: Facts = {
-        "the sum agrees with differences": Fact(error, 0, 1e-7, red="adjoint_off_by_one"),
+        "the sum agrees with finite differences": Fact(error, 0, 1e-7, red="adjoint_off_by_one"),
         "negative at each step of the dark cloud": Fact(
             d_sigma[dark].max(), -10, -1e-9, red="adjoint_no_occlusion"
         ),
         "positive at each step of the bright cloud": Fact(
             d_sigma[bright].min(), 1e-9, 10, red="adjoint_only_occlusion"
         ),
-        "a step never shows less of itself": Fact(own.min(), 0, 1, red="adjoint_sign"),
-        "what is hidden counts minus": Fact(hidden.max(), -10, 0, red="adjoint_occlusion_added"),
+        "the own term is never negative": Fact(own.min(), 0, 1, red="adjoint_sign"),
+        "the occlusion term is never positive": Fact(
+            hidden.max(), -10, 0, red="adjoint_occlusion_added"
+        ),
         "weights sum to 1 - T_end": Fact(
             w.sum() + parts.end_of(module, sigma, dt), 1 - 1e-9, 1 + 1e-9, red="adjoint_color_no_T"
         ),
@@ -166,22 +166,22 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     axes.plot(x, d_sigma, color=INK)
     axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
     for text, place, color in (
-        ("shows more of itself", (4.1, 0.035), BLUE),
-        ("hides what is behind", (4.1, -0.038), ORANGE),
-        ("sum; dots: differences", (1.6, -0.034), INK),
+        ("own term", (4.1, 0.035), BLUE),
+        ("occlusion term", (4.1, -0.038), ORANGE),
+        ("sum; dots: finite differences", (1.3, -0.034), INK),
     ):
         axes.annotate(text, place, color=color, fontsize=8)
     axes.set(ylim=(-0.07, 0.07))
     low, high = axes.get_ylim()
     for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
         axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
-    axes.set(xlabel="distance from the eye [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
+    axes.set(xlabel="distance from the camera [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
     plain_axes(axes)
     return figure, facts
 
 
 def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
-    """Six wrong adjoints of a ray: how far off, and how well they point."""
+    """Six wrong adjoints of a ray: relative error and cosine."""
     rng = np.random.default_rng(8)
     rays, steps, length = 200, 24, 0.05
     sigma, color = rng.uniform(0.0, 3.0, (rays, steps)), rng.random((rays, steps, 3))
@@ -202,7 +202,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     subtle = (NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     worst = np.linalg.norm(right[few] - checked) / np.linalg.norm(checked)
     facts: Facts = {
-        "the right one agrees with differences to 1e-7": Fact(
+        "the right one agrees with finite differences to 1e-7": Fact(
             worst, 0, 1e-7, red="adjoint_inclusive"
         ),
         "the first two point elsewhere": Fact(
@@ -225,7 +225,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     for row, name in enumerate(names):
         text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
         note(axes, text, (values[row], row), (5, 0), va="center")
-    axes.set(xscale="log", xlim=(2, 40000), xlabel="distance from the right one [%]")
+    axes.set(xscale="log", xlim=(2, 40000), xlabel="relative error [%]")
     axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
     axes.set_axisbelow(True)
     axes.minorticks_off()
@@ -236,7 +236,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
-    """Two rays, their crossings of the planes of a box, and the stretches between them."""
+    """Two rays, their crossings of the planes of a box, and the intervals between them."""
     low, high = np.array([1.0, 1.0, -1.0]), np.array([4.0, 3.0, 1.0])
     origins = np.array([[0.0, 0.6, 0.0], [0.0, 0.2, 0.0]])
     directions = np.array([[1.0, 0.5, 0.0], [0.8, 2.6, 0.0]])
@@ -247,7 +247,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     overlap = [(max(p[0][0], p[1][0]), min(p[0][1], p[1][1])) for p in planes]
     facts: Facts = {
-        "the first ray passes where both stretches overlap": Fact(
+        "the first ray hits where both intervals overlap": Fact(
             np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0], red="box_first_entry"
         ),
         "those of the second do not overlap": Fact(
@@ -287,14 +287,14 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                 markerfacecolor="white",
                 markersize=5,
             )
-            said = "between the " + "xy"[a] + " planes"
+            said = "in the " + "xy"[a] + " slab"
             note(right, said, (planes[r][a][0], rows), (0, 7), fontsize=7.5)
             rows += 1
         if far[r] > near[r]:
             right.plot(
                 [near[r], far[r]], [rows, rows], color=colors[r], linewidth=4, solid_capstyle="butt"
             )
-        said = "in the box" if far[r] > near[r] else "never between all: misses"
+        said = "in the box" if far[r] > near[r] else "never in all slabs: misses"
         start = near[r] if far[r] > near[r] else 0.3
         note(right, said, (start, rows), (0, 6), fontsize=7.5, color=colors[r])
         rows += 1
@@ -304,7 +304,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
-    """A photographed volume, a wrong guess, and the derivative of their difference by sigma."""
+    """A photographed volume, a wrong guess, and the derivative of the loss w.r.t. sigma."""
     shape, low, high = (24, 24, 24), -np.ones(3), np.ones(3)
     truth, guess, pieces = parts.ball_and_ring(shape)
     pixels = 60
@@ -360,7 +360,7 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     for axes in panels:
         axes.set(xticks=[], yticks=[])
     bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
-    bar.set_ticklabels(["−1\nadd σ", "0", "take σ\naway  1"])
+    bar.set_ticklabels(["−1\nadd σ", "0", "remove\nσ  1"])
     return figure, facts
 
 

@@ -1,10 +1,10 @@
 # %% [markdown]
 # # A scene from its photographs
-# Photographs a scene drawn by formulas, shows what the photographs want of fog, and recovers the
-# scene with your functions, next to the C++ core where that is installed. Never graded. `python
-# explore.py` takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total
-# variation) and `--capture DIR`: a folder with `transforms.json` and its pictures. Of these,
-# `--box` says how far the box reaches from the origin.
+# Photographs a scene defined by formulas, shows the gradient at fog, and recovers the scene with
+# your functions, next to the C++ core where that is installed. Never graded. `python explore.py`
+# takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total variation) and
+# `--capture DIR`: a folder with `transforms.json` and its images. For a capture, `--box` is the
+# extent of the box from the origin.
 
 # %%
 from __future__ import annotations
@@ -63,7 +63,7 @@ def photographs(grid, number, size, turn=0.0):
 
 
 def shown(grid, views, samples=32):
-    """All pictures of a volume."""
+    """All images of a volume."""
     shape = views["pictures"].shape
     origins, directions, _ = mine.ray_batch(views, np.arange(int(np.prod(shape[:3]))))
     box = views["low"], views["high"]
@@ -72,7 +72,7 @@ def shown(grid, views, samples=32):
 
 
 def gradient(grid, views):
-    """The derivative of the loss of all photographs by each number of a volume."""
+    """Gradient of the loss of all photographs with respect to a volume."""
     everything = np.arange(views["pictures"][..., 0].size)
     origins, directions, truth = mine.ray_batch(views, everything)
     asked = (views["low"], views["high"], origins, directions, mine.SAMPLES, views["background"])
@@ -98,27 +98,29 @@ truth = scene(24)
 views, unseen = photographs(truth, count, pixels), photographs(truth, 4, pixels, 1.0)
 fog = mine.fog((voxels,) * 3)
 print(f"scene:  {count} photographs of {pixels} x {pixels}, a volume of {voxels}^3")
-print(f"        fog has {mine.psnr(shown(fog, unseen), unseen['pictures']):.1f} dB on new views")
+print(
+    f"        fog has {mine.psnr(shown(fog, unseen), unseen['pictures']):.1f} dB on held-out views"
+)
 
 # %% [markdown]
 # ## Your signs, your fit
 
 # %%
 slope, signs = gradient(fog, views)[..., 3], mine.gradient_sign_map(fog, views)
-print(f"signs:  {np.mean(signs < 0):.0%} of all voxels want more, {np.mean(signs > 0):.0%} less")
+print(f"signs:  {np.mean(signs < 0):.0%} of all voxels negative, {np.mean(signs > 0):.0%} positive")
 found, losses, seconds = recover(views, voxels, steps)
 own = mine.psnr(shown(found, views), views["pictures"])
 new = mine.psnr(shown(found, unseen), unseen["pictures"])
 print(
     f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
-    f"{new:.1f} dB on new views"
+    f"{new:.1f} dB on held-out views"
 )
 
 # %% [markdown]
 # ## The C++ core
-# Its renderer and its adjoint in the place of yours. It steps along a ray by equal lengths, where
-# 08 takes equal numbers of steps: the derivatives differ as two quadratures do, the less the finer
-# the steps. They are compared with a hundred and more on each ray.
+# Its renderer and its adjoint instead of yours. Its steps have equal lengths, where 08 takes equal
+# numbers of steps: the derivatives differ as two quadratures do, less with finer steps. They are
+# compared with a hundred steps per ray or more.
 
 
 # %%
@@ -162,7 +164,7 @@ FINE = 160
 
 
 def finely(grid, views):
-    """The derivative by extinction with many samples on each ray."""
+    """The derivative with respect to extinction with many samples per ray."""
     samples, mine.SAMPLES = mine.SAMPLES, FINE
     slope = gradient(grid, views)[..., 3]
     mine.SAMPLES = samples
@@ -186,17 +188,17 @@ else:
     score = mine.psnr(shown(core, unseen), unseen["pictures"])
     print(
         f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
-        f"{score:.1f} dB on new views in {core_seconds:.1f} s"
+        f"{score:.1f} dB on held-out views in {core_seconds:.1f} s"
     )
 
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 
 # %%
 def signed(axes, values, title):
-    """The middle slice of a volume: blue negative (add), red positive (take away); roots."""
+    """The middle slice of a volume: blue negative (add), red positive (remove); roots."""
     flat = values[:, :, values.shape[2] // 2].T
     root = np.sign(flat) * np.sqrt(np.abs(flat) / max(np.abs(flat).max(), 1e-300))
     axes.imshow(root, cmap="RdBu_r", vmin=-1, vmax=1, origin="lower")
@@ -204,7 +206,7 @@ def signed(axes, values, title):
 
 
 def light(axes, picture, title):
-    """A picture of linear light."""
+    """An image of linear radiance."""
     axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
 
@@ -231,14 +233,14 @@ signed(panels[1, 0], slope, "your derivative by σ, from fog")
 signed(panels[1, 2], signs, "your sign map, from fog")
 signed(panels[1, 3], gradient(found, views)[..., 3], "your derivative after the fit")
 figure.savefig("recovery.png", dpi=100)
-print("recovery.png: a new view, your derivative, what was recovered")
+print("recovery.png: a held-out view, your derivative, the recovered volume")
 
 
 # %% [markdown]
 # ## Photographs of your own
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
-# and an angle of view or a focal length in pixels. The background counts as the mean of the
-# pictures' borders. The last photograph is kept back.
+# and a field of view or a focal length in pixels. The background is the mean of the borders of the
+# images. The last photograph is held out.
 
 
 # %%
@@ -263,7 +265,7 @@ if capture:
     kept_back, guess = last["pictures"], shown(volume, last)
     print(
         f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
-        f"{mine.psnr(guess, kept_back):.1f} dB on the one kept back"
+        f"{mine.psnr(guess, kept_back):.1f} dB on the held-out one"
     )
     figure = Figure(figsize=(13, 3.4), layout="constrained")
     panels = figure.subplots(1, 5)
@@ -273,4 +275,4 @@ if capture:
     light(panels[3], guess[0], "recovered")
     signed(panels[4], gradient(mine.fog(volume.shape[:3]), train)[..., 3], "derivative, from fog")
     figure.savefig("capture.png", dpi=100)
-    print("capture.png: your photographs, what was recovered, what they wanted of fog")
+    print("capture.png: your photographs, the recovered volume, the gradient at fog")

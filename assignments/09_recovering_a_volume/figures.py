@@ -32,8 +32,8 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
     corners = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
     edges = np.array([_columns(views, k, corners) for k in range(6)])
     facts: Facts = {
-        "middle rays go through the origin": Fact(miss.max(), 0, 1e-9),
-        "dots land in the middles of their pixels": Fact(
+        "central rays go through the origin": Fact(miss.max(), 0, 1e-9),
+        "dots lie at the centers of their pixels": Fact(
             np.abs(columns - np.arange(size) - 0.5).max(), 0, 1e-9
         ),
         "corners lie between the first and the last column": Fact(
@@ -61,7 +61,7 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
-    """A photograph, a slice of the density, the derivative from fog, and its signs."""
+    """A photograph, a slice of the density, the derivative at fog, and its signs."""
     scene, views = _small_scene(module)
     n = len(scene)
     slope = _slope(module, module.fog((n, n, n)), views)
@@ -70,7 +70,7 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
     where = n // 2
     facts: Facts = {
         "inside over 95 % are negative": Fact(_share(signs, inside, -1), 0.95, 1),
-        "where only background is seen over 95 % are positive": Fact(
+        "where only background is visible over 95 % are positive": Fact(
             _share(signs, outside, 1), 0.95, 1
         ),
         "of the other empty voxels far from all are positive": Fact(
@@ -103,7 +103,7 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
-    """Share of positive voxels by how many photographs see a ball through them."""
+    """Fraction of positive voxels by how many photographs see a ball through them."""
     scene, views = _small_scene(module)
     n = len(scene)
     fog = module.fog((n, n, n))
@@ -118,7 +118,7 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "none: all are positive": Fact(start[0], 0.999, 1),
         "all six: few are": Fact(start[6], 0, 0.25),
-        "the share falls from none to six": Fact(start[0] > start[3] > start[6]),
+        "the fraction falls from none to six": Fact(start[0] > start[3] > start[6]),
         "after twelve steps far more are positive from two on": Fact(
             all(after[k] > start[k] + 0.25 for k in range(2, 7))
         ),
@@ -139,7 +139,7 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
-    """A new view after some steps; PSNR against steps with a right and with a wrong adjoint."""
+    """A held-out view after some steps; PSNR by steps with a right and with a wrong adjoint."""
     scene = _two_balls(20, 1.0)
     views, unseen = _photographs(module, scene, 12, 14), _photographs(module, scene, 3, 14, 1.0)
     marks = (0, 1, 4, 8, 20, 50)
@@ -149,11 +149,11 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     bad = [_score(module, grid, unseen) for grid in wrong]
     at = marks.index(8)
     facts: Facts = {
-        "the right one passes 30 dB on unseen views": Fact(new[-1], 30, 60),
+        "the right one passes 30 dB on held-out views": Fact(new[-1], 30, 60),
         "after eight steps both are less than 1 dB apart": Fact(abs(new[at] - bad[at]), 0, 1),
         "the wrong one still has more than 20 dB": Fact(bad[-1], 20, 40),
         "and is worse than the right one in the end": Fact(new[-1] - bad[-1], 1.5, 40),
-        "photographs are matched better than unseen views": Fact(own[-1] > new[-1]),
+        "photographs are matched better than held-out views": Fact(own[-1] > new[-1]),
     }
     large = _large(module, scene, unseen)
     figure = Figure(figsize=(7.0, 4.6), layout="constrained")
@@ -169,14 +169,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     axes.plot(marks, new, "o-", color=BLUE, markersize=4)
     axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
     note(axes, "right adjoint", (marks[-1], new[-1]), (-4, -16), color=BLUE, ha="right")
-    note(
-        axes,
-        "what a step hides left out",
-        (marks[-1], bad[-1]),
-        (-4, -24),
-        color=ORANGE,
-        ha="right",
-    )
+    note(axes, "no occlusion term", (marks[-1], bad[-1]), (-4, -24), color=ORANGE, ha="right")
     axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
     plain_axes(axes)
     return figure, facts
@@ -221,7 +214,7 @@ def _views(pictures: Array, poses: Array) -> Views:
 
 
 def _columns(views: Views, view: int, points: Array) -> Array:
-    """The columns at which points are seen, by equation (5)."""
+    """The columns to which points are projected, by equation (5)."""
     pose = np.asarray(views["world_from_camera"])[view]
     x, _, z = ((points - pose[:3, 3]) @ pose[:3, :3]).T
     return views["focal"] * x / z + np.asarray(views["pictures"]).shape[2] / 2
@@ -281,7 +274,7 @@ def _small_scene(module: ModuleType) -> tuple[Array, Views]:
 
 
 def _slope(module: ModuleType, grid: Array, views: Views) -> Array:
-    """The derivative by extinction over all pixels."""
+    """The derivative with respect to extinction over all pixels."""
     chosen = np.arange(np.asarray(views["pictures"])[..., 0].size)
     origins, directions, truth = module.ray_batch(views, chosen)
     rays = (LOW, HIGH, origins, directions, module.SAMPLES, BACKGROUND)
@@ -290,7 +283,7 @@ def _slope(module: ModuleType, grid: Array, views: Views) -> Array:
 
 
 def _kinds(module: ModuleType, scene: Array, views: Views) -> tuple[Array, Array, Array, Array]:
-    """Voxels inside; seen before background alone; other empty ones; how many views see a ball.
+    """Voxels inside; before background only; other empty ones; how many views see a ball.
 
     The last is -1 where no ray reads a voxel at all.
     """
@@ -341,7 +334,7 @@ def _watched(
 
 
 def _without_hiding(module: ModuleType) -> Callable[..., tuple[Array, Array]]:
-    """The adjoint of 08 of whose derivative by extinction what a step hides is left out."""
+    """The adjoint of 08 without the occlusion term of d_sigma."""
     parts = module.render_adjoint.__globals__
 
     def adjoint(

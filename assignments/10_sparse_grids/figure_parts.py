@@ -10,7 +10,7 @@ from photograd_course.viz.handout import Array
 
 
 def gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
-    """(loss, derivative by the middle step's four numbers) on the ray of the warm-up."""
+    """(loss, gradient of the four numbers of the middle step) on the ray of the warm-up."""
     values = np.array([[0.2] * 3 + [1.0], [color] * 3 + [sigma], [0.8] * 3 + [2.0]])
     row = np.full((8, 3), -1)
     row[0] = 0, 1, 2
@@ -22,7 +22,7 @@ def gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
 
 
 def shell(n: int) -> Array:
-    """Cells through which a sphere passes."""
+    """Cells that a sphere crosses."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     away = np.linalg.norm(x - [0.05, -0.1, 0.0], axis=-1)
     return np.abs(away - 0.72) < 0.9 / n
@@ -31,7 +31,7 @@ def shell(n: int) -> Array:
 def leaves_in_slice(
     module: ModuleType, tree: Array, n: int, k: int
 ) -> list[tuple[tuple[float, float], float, bool]]:
-    """(lower corner, side, full) of the leaves that cells (i, j, k) lie in."""
+    """(lower corner, side, full) of the leaves that contain cells (i, j, k)."""
     cells = np.stack([*np.indices((n, n)).reshape(2, -1), np.full(n * n, k)], axis=1) + 0.5
     full, low, side = module.octree_leaf(tree, n, cells)
     rows = np.unique(np.column_stack([low[:, :2], side, full]), axis=0)
@@ -41,7 +41,7 @@ def leaves_in_slice(
 def looks(
     module: ModuleType, rng: np.random.Generator, slots: int, count: int
 ) -> tuple[float, float]:
-    """Mean number of slots that a search for voxels in the table and for others looks at."""
+    """Mean number of slots visited by searches for voxels in the table and for others."""
     voxels = np.unique(rng.integers(-500, 500, (2 * count + 2000, 3)), axis=0)
     voxels = rng.permutation(voxels)
     table = np.zeros((slots, 4), np.int64)

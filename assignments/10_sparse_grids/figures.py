@@ -14,7 +14,7 @@ from photograd_course.viz.style import RED as CRIMSON
 
 
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative of a loss by the extinction of a step that is not there, by its color."""
+    """Derivative of a loss with respect to the extinction of an absent step, over its color."""
     colors = np.linspace(0, 1, 21)
     slopes = np.array([parts.gap(module, 0.0, c)[1][3] for c in colors])
     by_color = np.array([np.abs(parts.gap(module, 0.0, c)[1][:3]).max() for c in colors])
@@ -27,8 +27,12 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
         "the derivative changes its sign at the color seen behind": Fact(
             crossing - behind, -0.01, 0.01, red="back_first_channel"
         ),
-        "differences agree": Fact(np.abs(slopes - apart).max(), 0, 1e-5, red="back_without_g"),
-        "the derivative by color is zero": Fact(by_color.max(), 0, 0, red="back_without_g"),
+        "finite differences agree": Fact(
+            np.abs(slopes - apart).max(), 0, 1e-5, red="back_without_g"
+        ),
+        "the derivative with respect to color is zero": Fact(
+            by_color.max(), 0, 0, red="back_without_g"
+        ),
         "bright: the loss falls at first": Fact(
             curves[0.9][1] < curves[0.9][0], held="what the figure was given"
         ),
@@ -39,8 +43,8 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
     left.axvline(behind, color=GRAY, linewidth=0.8, linestyle="--")
     left.plot(colors, slopes, color=BLUE)
     left.plot(colors[::2], apart[::2], "o", color=INK, markersize=3)
-    note(left, "seen behind", (behind, slopes.min()), (4, 0))
-    left.set(xlabel="color that it is given", ylabel="∂L/∂σ at σ = 0")
+    note(left, "color behind", (behind, slopes.min()), (4, 0))
+    left.set(xlabel="color of the step", ylabel="∂L/∂σ at σ = 0")
     for c, color in ((0.9, BLUE), (0.3, ORANGE)):
         right.plot(sigma, curves[c], color=color)
         note(
@@ -66,7 +70,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
     growth = shells[-1] / shells[-2]
     half = len(module.octree_from_dense(np.indices((n, n, n))[0] < n // 2))
     facts: Facts = {
-        "one odd cell costs 8 nodes a level": Fact(
+        "one full cell costs 8 nodes per level": Fact(
             (np.array(ones) == 1 + 8 * np.log2(sizes)).all(), red="octree_empty_cut"
         ),
         "a shell about four times as many with each doubling": Fact(
@@ -102,7 +106,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
-    """Rays through a slice of the tree: which samples are read, where leaves are asked for."""
+    """Rays through a slice of the tree: evaluated samples, and lookups of leaves."""
     n, count = 32, 64
     full = parts.shell(n)
     tree = module.octree_from_dense(full)
@@ -125,10 +129,10 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     occupied = inside.mean() * count * len(first)
     facts: Facts = {
         "exactly the samples in full cells": Fact((wanted == right).all(), red="skip_one_too_far"),
-        "read samples cover at most 1.3 times the occupied length": Fact(
+        "evaluated samples cover at most 1.3 times the occupied length": Fact(
             wanted.sum() / occupied, 0.7, 1.3, red="skip_nothing"
         ),
-        "fewer questions than a third of the samples": Fact(
+        "fewer lookups than a third of the samples": Fact(
             len(questions) / right.size, 0.01, 1 / 3, red="skip_each_sample"
         ),
     }
@@ -160,7 +164,7 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
-    """Slots that a search looks at, by how full the table is."""
+    """Slots that a search visits, by the load factor."""
     rng = np.random.default_rng(5)
     slots = 1009
     loads = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9])
@@ -181,8 +185,8 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
             0.25,
             red="hash_from_zero",
         ),
-        "half full: a miss looks at less than 3": Fact(missing[2], 1.0, 3.0, red="hash_from_zero"),
-        "nine tenths full: at more than 40": Fact(missing[5], 40.0, 200.0, red="hash_from_zero"),
+        "half full: a miss visits fewer than 3": Fact(missing[2], 1.0, 3.0, red="hash_from_zero"),
+        "nine tenths full: more than 40": Fact(missing[5], 40.0, 200.0, red="hash_from_zero"),
     }
     figure, axes = subplots(7.0, 2.9)
     x = np.linspace(0.02, 0.92, 90)
@@ -192,7 +196,7 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
     axes.semilogy(loads, found, "o", color=BLUE, markersize=5)
     note(axes, "not in the table", (0.9, missing[-1]), (-8, 8), ha="right", color=ORANGE)
     note(axes, "in the table", (0.9, found[-1]), (8, -3), color=BLUE)
-    axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
+    axes.set(xlabel="load factor", ylabel="slots visited", xlim=(0, 1.05))
     axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
     axes.minorticks_off()
     plain_axes(axes)
@@ -200,12 +204,12 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative by extinction where voxels are, and what it would be where there are none."""
+    """The derivative with respect to extinction of existing voxels, and of absent ones."""
     n = 16
     voxels, values = parts.ball_and_ring(n)
     rays = parts.cameras(12, 10)
     target = module.render(values, parts.samples_of(module, n, voxels, rays))
-    # The guess lacks the ring: only the ball was kept.
+    # The guess lacks the ring: it has only the ball.
     ball = values[:, 0] > 0.6
     some, kept = voxels[ball], values[ball]
     samples = parts.samples_of(module, n, some, rays)
@@ -213,7 +217,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     _, d_kept = module.loss_and_grad(kept, samples, target)
     every = np.argwhere(np.ones((n, n, n), bool))
     at = some @ np.array([n * n, n, 1])
-    # Next to what exists a new color would mix into samples of today: those voxels stay black.
+    # Next to existing voxels a new color would change samples: those new voxels are black.
     beside = module.prune_and_dilate(n, some, np.arange(len(some)), np.ones(len(some)), 0.0, 1)
     far = np.ones(n**3, bool)
     far[beside @ np.array([n * n, n, 1])] = False
@@ -238,17 +242,17 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
         "those that exist get the same derivative": Fact(
             np.abs(np.array(maps)[:, at] - d_kept[:, 3]).max(), 0, 1e-12, red="back_to_the_last"
         ),
-        "bright: over 90 % of the missing ring is asked for": Fact(
+        "bright: negative in over 90 % of the missing ring": Fact(
             (maps[0][ring] < 0).mean(), 0.9, 1.0, red="back_without_g"
         ),
-        "black: less than half of it": Fact(
+        "black: in less than half of it": Fact(
             (maps[1][ring] < 0).mean(), 0.0, 0.5, red="skip_stops_at_full"
         ),
     }
     figure, panels = subplots(7.0, 2.6, 1, 3)
     own = np.zeros(n**3)
     own[at] = d_kept[:, 3]
-    # Roots, so that the small ones show as well.
+    # Roots, so that small values show as well.
     ends = [np.sign(each) * np.sqrt(np.abs(each)) for each in (own, *maps)]
     end = max(float(np.abs(ends[1][far]).max()), 1e-300)
     titles = ("voxels that exist", "all, the new ones bright", "all, the new ones black")
@@ -264,7 +268,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
-    """What is pruned too early is lost; what is left may grow."""
+    """Voxels pruned too early are lost; dilation restores them."""
     n, total, threshold = 8, 24, 0.06
     voxels, values = parts.rods_of(16)
     rays, unseen, shown = parts.cameras(10, 6), parts.cameras(6, 8, 1.0), parts.cameras(3, 40, 0.5)
@@ -290,7 +294,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         "pruned every 3 steps it loses more than 5 dB": Fact(
             gap[0], 5.0, 30.0, red="fit_never_prunes"
         ),
-        "growing, it is never below all voxels": Fact(
+        "dilated, it is never below all voxels": Fact(
             min(scores[1]) - dense, 0.0, 10.0, red="fit_never_grows"
         ),
         "with less than three quarters of the voxels": Fact(
@@ -307,7 +311,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     pictures = (
         ("truth", module.render(values, parts.samples_of(module, 16, voxels, view))),
         ("pruned every 3 steps", parts.picture(module, n, kept[0, 3], view)),
-        ("pruned and grown", parts.picture(module, n, kept[1, 3], view)),
+        ("pruned and dilated", parts.picture(module, n, kept[1, 3], view)),
     )
     for k, (title, colors) in enumerate(pictures):
         axes = figure.add_subplot(grid[0, k])
@@ -316,13 +320,13 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     axes = figure.add_subplot(grid[1, :])
     axes.axhline(dense, color=GRAY, linestyle="--", linewidth=1)
     note(axes, "all voxels, never pruned", (after[0], dense), (30, -12))
-    for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
+    for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and dilated")):
         axes.plot(after, scores[grow], color=color, marker="o", markersize=4)
         note(axes, name, (after[-1], scores[grow][-1]), (8, -3), color=color)
     axes.set(
         xscale="log",
         xlabel="steps before each pruning (24 in all)",
-        ylabel="PSNR of new views [dB]",
+        ylabel="PSNR of held-out views [dB]",
         xlim=(2.7, 22),
     )
     axes.set_xticks(after, [str(k) for k in after])

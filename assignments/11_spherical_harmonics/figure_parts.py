@@ -39,7 +39,7 @@ def show_ball(axes, values, inside, top):
 
 
 def direction_map(rows):
-    """Directions (N, 3) of a map of the sphere: angle to the right, z up, each cell alike large."""
+    """Directions (N, 3) of an equal-area map of the sphere: angle to the right, z up."""
     z = 1 - (np.arange(rows) + 0.5) * 2 / rows
     phi = (np.arange(2 * rows) + 0.5) * np.pi / rows
     z, phi = np.meshgrid(z, phi, indexing="ij")
@@ -47,16 +47,16 @@ def direction_map(rows):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3), z.shape
 
 
-LAMP = np.array([0.48, 0.64, 0.6])
+LIGHT = np.array([0.48, 0.64, 0.6])
 
 
 def sky(d, sharp=25.0, pale=0.3):
-    """Radiance (N, 1): pale above, dark below, and a lamp, the smaller the sharper."""
-    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LAMP[:, None] - 1))
+    """Radiance (N, 1): pale above, dark below, and a light, smaller for a larger exponent."""
+    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LIGHT[:, None] - 1))
 
 
 def ball_scene(module, n, light, second=False):
-    """A shiny ball, perhaps with a second one: density (n, n, n) and coefficients."""
+    """A glossy ball, perhaps with a second one: density (n, n, n) and coefficients."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
     radii = [0.6] if not second else [0.45, 0.3]

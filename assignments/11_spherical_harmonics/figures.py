@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import figure_parts as parts
 import numpy as np
-from figure_parts import LAMP
+from figure_parts import LIGHT
 from matplotlib.figure import Figure
 from photograd_course.metrics import psnr
 from photograd_course.viz.handout import Fact, figures_of, note, subplots
@@ -27,8 +27,8 @@ def fig1_harmonics(module):
         "degree 0 is the same everywhere": Fact(
             np.ptp(Y[:, 0]), 0, 1e-12, held="no known mistake makes it vary"
         ),
-        "l = 1, m = 1 is negative towards +x": Fact(east[3], -1, -0.4, red="no_phase"),
-        "l = 1, m = 0 is positive towards +z": Fact(pole[2], 0.4, 1, red="pole_along_y"),
+        "l = 1, m = 1 is negative toward +x": Fact(east[3], -1, -0.4, red="no_phase"),
+        "l = 1, m = 0 is positive toward +z": Fact(pole[2], 0.4, 1, red="pole_along_y"),
         "odd degrees change sign at the opposite point, even ones do not": Fact(
             np.abs(back - there * odd).max(), 0, 1e-12, red="angle_once"
         ),
@@ -50,7 +50,7 @@ def fig1_harmonics(module):
 
 
 def fig2_projection(module):
-    """A sky and what degrees 0, 1, 2 and 4 keep of it."""
+    """A sky and its projections to degree 0, 1, 2 and 4."""
     d, weights = module.quadrature(40)
     places, shape = parts.direction_map(48)
     rows, shown = {}, [("the sky", parts.sky(places)[:, 0])]
@@ -66,14 +66,16 @@ def fig2_projection(module):
     four = rows[4][0][:, 0]
     peak = shown[-1][1]
     facts = {
-        "each degree comes closer": Fact((np.diff(errors) < 0).all(), red="project_summed"),
-        "the mean is kept from the first": Fact(
+        "the error decreases with the degree": Fact(
+            (np.diff(errors) < 0).all(), red="project_summed"
+        ),
+        "the mean is exact from the first": Fact(
             max(abs(mean - 1) for mean in means), 0, 1e-9, red="project_mean"
         ),
-        "degree 4 finds the lamp to 10 degrees": Fact(
-            np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP)), 0, 10, red="recurrence_sign"
+        "degree 4 finds the light to 10 degrees": Fact(
+            np.degrees(np.arccos(places[np.argmax(peak)] @ LIGHT)), 0, 10, red="recurrence_sign"
         ),
-        "degree 4 keeps less than half of the lamp's peak": Fact(
+        "degree 4 keeps less than half of the light's peak": Fact(
             peak.max() / shown[0][1].max(), 0.1, 0.5, red="project_summed"
         ),
         "degree 4 is below zero on more than 10 % of the sphere": Fact(
@@ -108,7 +110,7 @@ def fig2_projection(module):
 
 
 def fig3_tangent(module):
-    """A function of direction, and its derivative by v as arrows, from two sides."""
+    """A function of direction, and its derivative with respect to v, from two sides."""
     c = np.random.default_rng(4).uniform(-1, 1, (16, 1))
     d, inside = parts.ball(61)
     at, _ = parts.ball(15)
@@ -155,11 +157,11 @@ def fig4_irradiance(module):
         errors.append(float(np.abs(found[degree] - brute).max() / mean))
     facts = {
         "nine coefficients are within 3 % of the mean": Fact(errors[2], 0, 0.03, red="lobe_half"),
-        "degree 1 is more than ten times as far off": Fact(
+        "the error of degree 1 is more than ten times as large": Fact(
             errors[1] / errors[2], 10, 100, red="no_lobe"
         ),
         "degree 3 adds nothing": Fact(np.abs(found[3] - found[2]).max(), 0, 1e-12, red="lobe_flat"),
-        "degree 4 comes closer than degree 2": Fact(
+        "the error of degree 4 is smaller than that of degree 2": Fact(
             errors[4] / errors[2], 0, 0.9, red="lobe_no_fourth"
         ),
     }
@@ -192,7 +194,7 @@ def fig4_irradiance(module):
     axes = panels[1, 1]
     axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
     axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
-    axes.set(yscale="log", xlabel="kept up to degree", title="largest error, % of mean")
+    axes.set(yscale="log", xlabel="highest degree", title="largest error, % of mean")
     axes.spines[["top", "right"]].set_visible(False)
     axes = panels[1, 2]
     factors = [
@@ -214,7 +216,7 @@ def fig4_irradiance(module):
 
 
 def fig5_glyphs(module):
-    """What a step against the derivative does to the colors of a slice, by direction."""
+    """Change of the colors of a slice by a step against the derivative, by direction."""
     n, light = 12, np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
     density, c = parts.ball_scene(module, n, light)
     rays = parts.photographs(40, 16)
@@ -235,7 +237,7 @@ def fig5_glyphs(module):
     change = slice_ @ module.sh_basis(ring, 2).T
     strong = np.linalg.norm(slice_, axis=-1) > 0.3 * np.linalg.norm(slice_, axis=-1).max()
     facts = {
-        "cells that face the highlight get brighter towards it": Fact(
+        "cells that face the highlight get brighter toward it": Fact(
             (gain > 0).mean(), 0.95, 1, red="d_coefficients_without_g"
         ),
         "more than 80 % of the energy lies in or next to the ball": Fact(
@@ -263,12 +265,12 @@ def fig5_glyphs(module):
     )
     axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
     axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
-    axes.set_title("what a step will do: red brightens, blue darkens")
+    axes.set_title("change by a step: red brightens, blue darkens")
     return figure, facts
 
 
 def fig6_coarse_to_fine(module):
-    """A new view by a fixed grid and coarse to fine; PSNR of new views against steps."""
+    """A held-out view by a fixed grid and coarse to fine; PSNR of such views against steps."""
     light = np.array([0.48, -0.6, 0.64])
     density, c = parts.ball_scene(module, 20, light, second=True)
     rays, unseen, large = (
@@ -307,7 +309,7 @@ def fig6_coarse_to_fine(module):
         "the fixed grid fits its own photographs to better than 27 dB": Fact(
             runs["fixed grid"][3], 27, 60, red="uphill"
         ),
-        "on new views the fixed grid gets worse after its best": Fact(
+        "on held-out views the fixed grid gets worse after its best": Fact(
             max(fixed) - fixed[-1], 0.5, 10, red="coefficients_frozen"
         ),
         "degree 0 loses more than 2 dB": Fact(fine[-1] - plain[-1], 2, 20, red="coefficients_cut"),
@@ -325,7 +327,7 @@ def fig6_coarse_to_fine(module):
     for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
         axes.plot(ends, scores, look, color=color, markersize=5)
         note(axes, name, (ends[-1], scores[-1]), (7, 0), va="center")
-    axes.set(xlabel="step", ylabel="PSNR of new views [dB]", xlim=(-0.5, 23.5))
+    axes.set(xlabel="step", ylabel="PSNR of held-out views [dB]", xlim=(-0.5, 23.5))
     axes.set_xticks(range(0, 19, 3))
     axes.grid(visible=True)
     axes.spines[["top", "right"]].set_visible(False)

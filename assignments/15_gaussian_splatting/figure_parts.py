@@ -65,7 +65,7 @@ def photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:
 
 
 def cloud(count: int, scale: float) -> Scene:
-    """Gray balls anywhere."""
+    """Gray balls at random positions."""
     rng = np.random.default_rng(15)
     return {
         "means": rng.uniform(-0.8, 0.8, (count, 3)),
@@ -98,7 +98,7 @@ def score_of(module: ModuleType, scene: Scene, views: list[tuple[Camera, Array]]
 
 
 def solution_of(number: str) -> ModuleType:
-    """The solution's module of another assignment."""
+    """The solution of another assignment, as a module."""
     folder = next(Path(path) for name, path in source_folders().items() if name.startswith(number))
     return read_folder(folder).reference
 
@@ -122,7 +122,7 @@ def views_of_09(views: list[tuple[Camera, Array]]) -> dict[str, object]:
 def volume(
     views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
 ) -> tuple[Array, Array, tuple[float, Array]]:
-    """Assignment 09's fit: volume, the derivative by density at its start, score and a view."""
+    """The fit of assignment 09: volume, density gradient at its start, score and a view."""
     other = solution_of("09")
     photos, new = views_of_09(views), views_of_09(unseen)
     fog = other.fog((20, 20, 20))
@@ -142,7 +142,7 @@ def volume(
 def grid(
     views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
 ) -> tuple[int, Array, tuple[float, Array]]:
-    """Assignment 11's fit: how many numbers, the derivative by density at its start, and a view."""
+    """The fit of assignment 11: its size, density gradient at its start, and a view."""
     other = solution_of("11")
     rays, target = bundle(views)
     chosen = np.random.default_rng(15).choice(len(target), 1000, replace=False)
@@ -190,7 +190,7 @@ def show(axes: Axes, picture: Array, title: str) -> None:
 
 
 def calm(make: Callable[[ModuleType], tuple[Figure, Facts]]) -> Callable[..., tuple[Figure, Facts]]:
-    """Far from a splat exp underflows to 0, as it should."""
+    """Far from a splat exp underflows to 0, as intended."""
 
     @functools.wraps(make)
     def drawn(module: ModuleType) -> tuple[Figure, Facts]:

@@ -13,7 +13,7 @@ from photograd_course.viz.style import BLUE, GRAY, ORANGE, plain_axes, signed_co
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
-    """Points of a Gaussian as the camera sees them with its ellipse; its width far outside."""
+    """Projected points of a Gaussian with its ellipse; its width far outside the image."""
     camera = parts.camera_at(np.array([0.0, 0.0, -4.0]), 64)
     cov, _ = module.covariance(np.array([[0.9, 0.3, -0.2, 0.5]]), np.log([[0.5, 0.15, 0.3]]))
     mean = np.array([[0.25, -0.15, 0.2]])
@@ -35,8 +35,8 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
         "the points' covariance is cov2d within 6 %": Fact(
             np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0]), 0, 0.06
         ),
-        "held, the width stays": Fact(held[-1] / held[slopes > limit][0], 0.999, 1.001),
-        "not held, it is more than twice as large in the end": Fact(free[-1] / held[-1], 2, 10),
+        "clamped, the width is constant": Fact(held[-1] / held[slopes > limit][0], 0.999, 1.001),
+        "not clamped, it is more than twice as large in the end": Fact(free[-1] / held[-1], 2, 10),
     }
     figure, (left, right) = subplots(7.0, 3.0, 1, 2)
     left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
@@ -44,8 +44,8 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
         left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
     left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
     left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
-    right.plot(slopes, free, "--", color=ORANGE, label="not held")
-    right.plot(slopes, held, color=BLUE, label="held")
+    right.plot(slopes, free, "--", color=ORANGE, label="not clamped")
+    right.plot(slopes, held, color=BLUE, label="clamped")
     right.axvline(limit, color=GRAY, linewidth=0.8)
     right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
     right.legend()
@@ -55,7 +55,7 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
-    """What one pixel sees of six splats: alpha, what is left in front of each, and the weight."""
+    """Six splats in one pixel: alpha, the transmittance in front of each, and the weight."""
     alpha = np.array([[0.35], [0.6], [0.25], [0.8], [0.5], [0.3]])
     depth = np.array([2.2, 1.4, 3.1, 2.7, 3.6, 1.8])
     count = len(alpha)
@@ -68,9 +68,9 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     left = float(module.composite(alpha, np.zeros((count, 3)), depth, np.ones(3))[0][0, 0])
     order = np.argsort(depth)
     facts: Facts = {
-        "weights and what is left add up to 1": Fact(weights.sum() + left, 1 - 1e-12, 1 + 1e-12),
-        "the nearest weighs its alpha": Fact(weights[order[0]] - 0.6, -1e-12, 1e-12),
-        "the most opaque one weighs a quarter of the nearest": Fact(
+        "weights and T_end sum to 1": Fact(weights.sum() + left, 1 - 1e-12, 1 + 1e-12),
+        "the weight of the nearest is its alpha": Fact(weights[order[0]] - 0.6, -1e-12, 1e-12),
+        "the weight of the most opaque one is a quarter of that of the nearest": Fact(
             weights[3] / weights[1], 0.23, 0.27
         ),
     }
@@ -88,7 +88,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
-    """One splat over two stripes: what each pixel adds, and what more Gaussians are worth."""
+    """One splat over two stripes: the gradient of each pixel; fits with density control."""
     n = 16
     camera = parts.camera_at(np.array([0.0, 0.0, -2.0]), n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5).reshape(2, -1)
@@ -117,8 +117,10 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         for most in (0, 60)
     ]
     facts: Facts = {
-        "the sum along x is less than 5 % of the sizes": Fact(signed[0] / total[0], 0, 0.05),
-        "pull is the sum of the sizes": Fact(
+        "the sum along x is less than 5 % of the sum of absolute values": Fact(
+            signed[0] / total[0], 0, 0.05
+        ),
+        "the absolute gradient is the sum of absolute values": Fact(
             total[0] / np.abs(pulls[:, 0]).sum(), 1 - 1e-9, 1 + 1e-9
         ),
         "with densify the loss ends below a tenth": Fact(curves[1][-1] / curves[0][-1], 0, 0.1),
@@ -137,7 +139,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     )
     for k in (1, 2):
         left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-    left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
+    left.set(xticks=[], yticks=[], title="−gradient of the mean, per pixel")
     right.semilogy(curves[0], color=GRAY, label="four Gaussians")
     right.semilogy(curves[1], color=BLUE, label="up to sixty")
     right.set(xlabel="step", ylabel="loss")
@@ -147,7 +149,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
-    """A view that was not among the photographs, while it is learned."""
+    """A held-out view during the fit."""
     marks = (0, 20, 40, 80, STEPS)
     kept, found, _ = parts.fitted(module, marks)
     fine = parts.camera_at(parts.places(3, 1.0)[0], 96)
@@ -157,7 +159,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     scores = [parts.score_of(module, scene, new[0]) for scene in kept]
     facts: Facts = {
         "each frame is better than the one before": Fact(np.all(np.diff(scores) > 0)),
-        "the last one has more than 26 dB on new views": Fact(scores[-1], 26, 60),
+        "the last one has more than 26 dB on held-out views": Fact(scores[-1], 26, 60),
         "it begins with 80 Gaussians": Fact(new[1][0], 80, 80),
         "it ends with more than 150": Fact(len(found["means"]), 151, MOST),
     }
@@ -169,7 +171,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
-    """Where descent moves each Gaussian, how hard the pixels pull, and what is chosen for that."""
+    """Where gradient descent moves each mean, the absolute gradients, and the chosen ones."""
     (scene,), _, views = parts.fitted(module, (70,), 70)
     camera, truth = views[1]
     shown, back = module.picture(scene, camera, BLACK)
@@ -183,16 +185,16 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     predicted = 1e-5 * np.sum(slope**2) / np.abs(slope).max() * error[..., 0].size
     cov, _ = module.covariance(scene["quats"], scene["log_scales"])
     places, cov2d, depth, _ = module.project(scene["means"], cov, camera)
-    # The error beneath a Gaussian, as its own weights count it.
+    # The error below a Gaussian, weighted with its own weights.
     pixels = np.stack(np.mgrid[0:SIZE, 0:SIZE][::-1], axis=-1).reshape(-1, 2) + 0.5
     alpha, _ = module.screen_alpha(places, cov2d, scene["opacity_logits"], pixels)
     beneath = alpha @ np.sum(error**2, axis=2).ravel() / np.maximum(alpha.sum(axis=1), 1e-9)
     facts: Facts = {
-        "a small step along all arrows lowers the loss as the gradient says": Fact(
+        "a small step along all arrows lowers the loss as the gradient predicts": Fact(
             fall / predicted, 0.98, 1.02
         ),
         "some are chosen, and most are not": Fact(chosen.mean(), 0.05, 0.6),
-        "beneath the chosen ones the error is at least 1.5 times that beneath the others": Fact(
+        "below the chosen ones the error is at least 1.5 times that below the others": Fact(
             beneath[chosen].mean() / beneath[~chosen].mean(), 1.5, 50
         ),
     }
@@ -202,8 +204,8 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     arrows *= 4 / np.quantile(np.linalg.norm(arrows, axis=1), 0.97)
     figure, panels = subplots(7.0, 2.7, 1, 3)
     parts.show(panels[0], truth, "a photograph")
-    parts.show(panels[1], shown, "arrows: where descent moves means")
-    parts.show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
+    parts.show(panels[1], shown, "arrows: −gradient of the means")
+    parts.show(panels[2], 0.35 * shown, "circles: absolute gradient; orange: chosen")
     panels[1].quiver(
         *(places - 0.5).T,
         *arrows.T,
@@ -227,7 +229,7 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
-    """One capture, three representations: pictures, bytes, what photographs want at first."""
+    """One capture, three representations: images, bytes, gradients at the start."""
     views, unseen = parts.photographs(VIEWS), parts.photographs(3, 1.0)
     begin = parts.cloud(80, 0.1)
     _, splats, _ = parts.fitted(module, ())
@@ -236,7 +238,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     score = parts.score_of(module, splats, unseen)
     sizes = [4 * sum(a.size for a in splats.values()), 4 * volume.size, 4 * grid]
     facts: Facts = {
-        "the Gaussians have the most decibels": Fact(score > max(score9[0], score11[0])),
+        "the Gaussians have the highest PSNR": Fact(score > max(score9[0], score11[0])),
         "and the fewest bytes": Fact(sizes[0] < min(sizes[1:])),
         "10 KiB of them as float32": Fact(sizes[0] / 1024, 9.5, 10.5),
         "all three have more than 20 dB": Fact(min(score, score9[0], score11[0]), 20, 60),
@@ -251,7 +253,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     names = ("Gaussians", "volume (09)", "SH grid (11)")
     pictures = (module.picture(splats, unseen[0][0], BLACK)[0], score9[1], score11[1])
     figure, panels = subplots(7.0, 3.9, 2, 4)
-    parts.show(panels[0, 0], unseen[0][1], "a new view: truth")
+    parts.show(panels[0, 0], unseen[0][1], "held-out view: truth")
     for axes, image, name, size, decibels in zip(
         panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
     ):

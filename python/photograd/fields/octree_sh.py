@@ -36,7 +36,7 @@ from photograd._arrays import Arguments
 from photograd._checkpoint import Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_leaves import (
     Borders,
@@ -104,9 +104,8 @@ class OctreeSh(VoxelField):
         density_scale: float = 1.0,
     ) -> None:
         """Raises ShapeError unless the arrays fit the tree, RangeError for rows that do not."""
+        row = Arguments("OctreeSh").array("row", row, (len(tree.values),), dtype=np.int32, low=-1)
         rows = int((row >= 0).sum())
-        if row.shape != (len(tree.values),):
-            raise ShapeError(message("OctreeSh", "row", f"({len(tree.values)},)", row.shape))
         if not np.array_equal(np.sort(row[row >= 0]), np.arange(rows)):
             raise RangeError(message("OctreeSh", "row", "each of 0, 1, ... once, or -1", "others"))
         call = Arguments("OctreeSh")

@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
-from photograd.errors import RangeError, SceneError, message
+from photograd.errors import SceneError, message
 from photograd.geometry import sdf
 from photograd.lights import EnvironmentMap, QuadLight
 from photograd.transport.material import Material
@@ -311,8 +312,7 @@ def builtin_scene(name: str, size: int = 256) -> Scene:
     if name not in BUILTIN:
         known = choose_from(name, BUILTIN)
         raise SceneError(message("builtin_scene", "name", "a built-in scene", name, known))
-    if size < 1:
-        raise RangeError(message("builtin_scene", "size", "at least 1 pixel", size))
+    Arguments("builtin_scene").integer("size", size, low=1)
     return BUILTIN[name](size)
 
 

@@ -241,8 +241,7 @@ class PathTracer:
         view = self.scene.camera if camera is None else camera
         call = Arguments("PathTracer.render_backward", np.float64)
         d_image = call.array("d_image", d_image, (view.height, view.width, 3), finite=False)
-        if spp < 1:
-            raise RangeError(message("PathTracer.render_backward", "spp", "at least 1", spp))
+        call.integer("spp", spp, low=1)
         return self.add_up(
             "render_backward",
             _core.trace_paths_backward,
