@@ -1,7 +1,5 @@
 """What the figures of assignment 02 draw: scenes, measurements, pieces of pictures."""
 
-from __future__ import annotations
-
 import math
 
 from matplotlib.patches import FancyArrowPatch

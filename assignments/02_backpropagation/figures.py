@@ -3,8 +3,6 @@
 `python figures.py` draws all of them into figures/.
 """
 
-from __future__ import annotations
-
 import figure_parts as parts
 import numpy as np
 from figure_parts import SMALL

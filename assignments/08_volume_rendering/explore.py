@@ -7,8 +7,6 @@
 # origin, `--voxels` its resolution, and `--views` the number of images to use.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 from pathlib import Path

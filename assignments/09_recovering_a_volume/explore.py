@@ -7,8 +7,6 @@
 # extent of the box from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 from pathlib import Path

@@ -8,8 +8,6 @@
 # with `transforms.json` and its images, of a scene that extends `--box` from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import tempfile
 import time

@@ -7,8 +7,6 @@
 # the coarsest level.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 

@@ -1,7 +1,5 @@
 """What the figures of assignment 11 draw: scenes, measurements, pieces of pictures."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.patches import Circle
 from photograd_course.captures import all_around, rays_to_origin

@@ -3,8 +3,6 @@
 `module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
 """
 
-from __future__ import annotations
-
 import figure_parts as parts
 import numpy as np
 from figure_parts import LIGHT

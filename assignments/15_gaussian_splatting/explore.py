@@ -7,8 +7,6 @@
 # `--every` (steps between two changes of their number), `--seed`, and `--core-pixels`.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 
