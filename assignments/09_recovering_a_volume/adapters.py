@@ -4,8 +4,6 @@ Runs beside your file; nothing here is to be changed or handed in. Your renderer
 `volume_recovery`, where the grader may put its own in the place of a wrong one.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import volume_recovery as yours
 

@@ -4,8 +4,6 @@ Runs beside your file; nothing here is to be changed or handed in. Each function
 the `back` that it returns with the derivatives that the check gives.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import splatting
 
