@@ -257,7 +257,7 @@ def test_bad_input_is_refused() -> None:
         SunlitMedium(good | {"sigma_t": np.ones((4, 1, 4))}, box, 0.1, sun=sun)
     with pytest.raises(DtypeError, match="float32"):
         SunlitMedium(good | {"g": np.zeros(1, np.float32)}, box, 0.1, sun=sun)
-    with pytest.raises(RangeError, match="step"):
+    with pytest.raises(RangeError, match="dt"):
         SunlitMedium(good, box, 0.0, sun=sun)
     with pytest.raises(RangeError, match="direction"):
         SunlitMedium(good, box, 0.1, sun=(0, 0, 0))

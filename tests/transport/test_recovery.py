@@ -257,7 +257,7 @@ def test_mistakes_are_named(room: tuple[Any, Any], tmp_path: Path) -> None:
         recover(scene, picture, [Parameter("emission.lamp", activation="logit")])
     with pytest.raises(RangeError, match="weight: expected finite numbers of at least 0"):
         Target(picture, weight=-np.ones((16, 16)))
-    with pytest.raises(RangeError, match="steps: expected at least 1"):
+    with pytest.raises(RangeError, match="steps: expected a whole number of at least 1"):
         RecoveryOptions(steps=0)
     with pytest.raises(IoError, match=r"expected a recovery \(recovery.npz\)"):
         recover(scene, picture, WALLS, folder=tmp_path, resume=True)

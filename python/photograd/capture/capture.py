@@ -137,7 +137,11 @@ class Capture:
         return self.train if kind == "train" else self.test
 
     def with_line(self, line: str) -> Capture:
-        """The same capture with one more sentence in its log."""
+        """The same capture with one more sentence in its log.
+
+        Args:
+            line: a sentence.
+        """
         return replace(self, conversions=(*self.conversions, line))
 
     def with_validation_split(self) -> Capture:
@@ -185,8 +189,7 @@ class Capture:
         Raises:
             RangeError: count below 1.
         """
-        if count < 1:
-            raise RangeError(message("subsample", "count", "at least 1", count))
+        count = Arguments("Capture.subsample").integer("count", count, low=1)
         line = f"at most {count} views of each split kept, evenly spaced"
         return replace(
             self,

@@ -82,6 +82,9 @@ class Distortion:
         With R = 1 + k1 r^2 + k2 r^4 and R' = dR/d(r^2) = k1 + 2 k2 r^2:
             dx'/dx = R + 2 x^2 R' + 2 p1 y + 6 p2 x      dx'/dy = 2 x y R' + 2 p1 x + 2 p2 y
             dy'/dy = R + 2 y^2 R' + 6 p1 y + 2 p2 x      dy'/dx = dx'/dy
+
+        Args:
+            points: (N, 2) ideal points, at depth 1.
         """
         x, y = points[:, 0], points[:, 1]
         k1, k2, p1, p2 = astuple(self)
@@ -208,9 +211,8 @@ class ColmapLens:
     parameters: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        if not all(abs(value) < 1e9 for value in self.parameters):
-            got = list(self.parameters)
-            raise RangeError(message("ColmapLens", "parameters", "finite numbers", got))
+        call = Arguments("ColmapLens", np.float64)
+        call.array("parameters", self.parameters, ("P",), above=-1e9, below=1e9)
         self._camera()
 
     def _camera(self) -> Any:
@@ -245,9 +247,9 @@ def _points(function: str, points: FloatArray) -> FloatArray:
 
 
 def _check_coefficients(lens: Distortion | FisheyeDistortion) -> None:
+    call = Arguments(type(lens).__name__)
     for name, value in vars(lens).items():
-        if not abs(value) < MAX_COEFFICIENT:
-            raise RangeError(message(type(lens).__name__, name, "a finite coefficient", value))
+        call.number(name, value, above=-MAX_COEFFICIENT, below=MAX_COEFFICIENT)
 
 
 def _first_root(coefficients: list[float]) -> float:

@@ -13,11 +13,11 @@ from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
+from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
 from photograd._memory import require_room
-from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.fields.voxel_field import GridField
 from photograd.representation import (
@@ -49,11 +49,15 @@ def cubic_voxels(extent: Array, resolution: int) -> list[int]:
 def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, int]:
     """Voxels along each edge of a box that stays as it is; they are nearly cubes.
 
+    Args:
+        function: on whose behalf the error speaks.
+        box: (2, 3) in meters.
+        resolution: voxels along the longest edge.
+
     Raises:
-        RangeError: fewer than 2 voxels along the longest edge.
+        DtypeError, RangeError: fewer than 2 voxels along the longest edge.
     """
-    if resolution < 2:
-        raise RangeError(message(function, "resolution", "at least 2", resolution))
+    Arguments(function).integer("resolution", resolution, low=2)
     extent = box[1] - box[0]
     voxel = extent.max() / resolution
     x, y, z = (max(round(edge), 2) for edge in (extent / voxel).tolist())
@@ -84,19 +88,16 @@ class DenseGrid(GridField):
     row_updates: ClassVar[bool] = False  # most rows have a gradient
 
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
-        """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite."""
-        if values.ndim != 4 or values.shape[3] != 4 or min(values.shape[:3]) < 2:
-            raise ShapeError(
-                message("DenseGrid", "values", "shape (X, Y, Z, 4), X Y Z >= 2", f"{values.shape}")
-            )
-        if values.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            raise DtypeError(
-                message("DenseGrid", "values", "float32 or float64", f"{values.dtype}")
-            )
-        if not np.isfinite(values).all():
-            count = int((~np.isfinite(values)).sum())
-            raise Error(message("DenseGrid", "values", "finite values", f"{count} that are not"))
-        self.params = {"values": np.ascontiguousarray(values)}
+        """Raises DtypeError, ShapeError or RangeError unless values is (X, Y, Z, 4), finite, and
+        X, Y and Z are at least 2.
+
+        Args:
+            values: raw color and density of each voxel.
+            policy: the box, the step and the activations.
+            fused: False takes the readable form of the kernel.
+        """
+        call = Arguments("DenseGrid")
+        self.params = {"values": call.array("values", values, ("X", "Y", "Z", 4), min_length=2)}
         self.policy = policy
         self.fused = fused
 
@@ -117,17 +118,18 @@ class DenseGrid(GridField):
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
         density scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is
         the start. Raises RangeError for a bad box, fewer than 2 voxels, or more than memory holds.
+
+        Args:
+            box: (2, 3) in meters.
+            resolution: voxels along the longest edge.
+            finest: resolution at the end of a fit; None takes `resolution`.
+            sigma_t: extinction in 1/m.
+            steps_per_voxel: of the march.
+            dtype: np.float32 or np.float64.
         """
-        if resolution < 2:
-            raise RangeError(
-                message("DenseGrid.empty", "resolution", "at least 2", f"{resolution}")
-            )
-        box = np.asarray(box, np.float64)
+        call = Arguments("DenseGrid.empty", np.float64)
+        resolution, box = call.integer("resolution", resolution, low=2), call.box("box", box)
         extent = box[1] - box[0]
-        if not (np.isfinite(box).all() and (extent > 0).all()):
-            raise RangeError(
-                message("DenseGrid.empty", "box", "finite, lower corner below upper", f"{box}")
-            )
         voxel = extent.max() / resolution
         voxels = cubic_voxels(extent, resolution)
         _require_room("DenseGrid.empty", voxels, np.dtype(dtype).itemsize)

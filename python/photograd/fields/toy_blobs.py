@@ -76,6 +76,13 @@ class ToyBlobs(Representation):
 
         Raises ShapeError unless the arrays are (N, 2), (N,) and (N, 3) with N >= 1, DtypeError
         unless all are float32 or all float64; RangeError for a `reach` that is not positive.
+
+        Args:
+            mean: (N, 2) on the canvas.
+            log_radius: (N,).
+            color: (N, 3).
+            reach: radii beyond which a blob is not drawn; None draws all.
+            faint: see above.
         """
         call = Arguments("ToyBlobs")
         arrays = {
@@ -83,8 +90,8 @@ class ToyBlobs(Representation):
             "log_radius": call.array("log_radius", log_radius, ("N",), finite=False),
             "color": call.array("color", color, ("N", 3), finite=False),
         }
-        if reach is not None and not reach > 0:
-            raise RangeError(message("ToyBlobs", "reach", "a positive number or None", f"{reach}"))
+        if reach is not None:
+            call.number("reach", reach, above=0)
         self.params = arrays
         self.reach = reach
         self.faint = faint

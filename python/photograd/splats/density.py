@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 from photograd_course.portable_math import log, log1p, matmul, sigmoid
 from photograd_course.row_map import RowMap
 
+from photograd._arrays import Arguments
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array
 
 
@@ -39,11 +40,10 @@ def rotation_matrices(quats: Array) -> Array:
     R = I + 2 w [v]x + 2 [v]x [v]x for a unit quaternion (w, v). [Shoemake1985]
 
     Raises:
-        ShapeError: `quats` is not (N, 4).
+        DtypeError, ShapeError: `quats` is not (N, 4) numbers.
     """
-    if quats.ndim != 2 or quats.shape[1] != 4:
-        raise ShapeError(message("rotation_matrices", "quats", "shape (N, 4)", f"{quats.shape}"))
-    q = quats.astype(np.float64)
+    call = Arguments("rotation_matrices", np.float64)
+    q = call.array("quats", quats, ("N", 4), finite=False)
     length = np.linalg.norm(q, axis=1, keepdims=True)
     w, x, y, z = (np.where(length > 0, q / np.where(length > 0, length, 1), [1, 0, 0, 0])).T
     zero = np.zeros_like(w)
@@ -69,17 +69,19 @@ class Grad2dStatistics:
 
     def checked(self, count: int) -> Grad2dStatistics:
         """Itself. Raises ShapeError or RangeError unless it belongs to `count` Gaussians."""
-        for name, array in (("total", self.total), ("count", self.count)):
-            if array.shape != (count,):
-                raise ShapeError(
-                    message("Grad2dStatistics", name, f"shape ({count},)", f"{array.shape}")
-                )
-            if array.size and array.min() < 0:
-                raise RangeError(message("Grad2dStatistics", name, "0 or more", array.min()))
+        call = Arguments("Grad2dStatistics", np.float64)
+        call.array("total", self.total, (count,), low=0)
+        call.array("count", self.count, (count,), dtype=np.int64, low=0)
         return self
 
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
-        """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,)."""
+        """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,).
+
+        Args:
+            screen: (N, 2).
+            visible: (N,).
+            camera: of the picture.
+        """
         half = max(camera.width, camera.height) / 2
         self.total += half * np.linalg.norm(screen.astype(np.float64), axis=1)
         self.count += visible
@@ -113,10 +115,8 @@ class Schedule:
     every: int = 100
 
     def __post_init__(self) -> None:
-        for name, lowest in (("first", 0), ("last", 0), ("every", 1)):
-            if getattr(self, name) < lowest:
-                found = getattr(self, name)
-                raise RangeError(message("Schedule", name, f"{lowest} or more", f"{found}"))
+        require_bounds(self, "first", "last", low=0)
+        require_bounds(self, "every", low=1)
 
     def due(self, step: int) -> bool:
         """Whether something happens before this step."""
@@ -133,14 +133,34 @@ class DensityControl(ABC):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """What becomes of the Gaussians before this step; None if nothing changes."""
+        """What becomes of the Gaussians before this step; None if nothing changes.
+
+        Args:
+            params: of the Gaussians, by group.
+            grad2d: positional gradients since the last change.
+            extent: of the scene, in meters.
+            step: of the fit.
+        """
 
     def add_priors(self, params: Params, gradients: dict[str, Array], *, extent: float) -> None:
-        """Add the gradient of what the strategy wants besides the photographs."""
+        """Add the gradient of what the strategy wants besides the photographs.
+
+        Args:
+            params: of the Gaussians, by group.
+            gradients: of the loss, changed in place.
+            extent: of the scene, in meters.
+        """
         del params, gradients, extent
 
     def explore(self, params: Params, *, extent: float, rate: float, step: int) -> None:
-        """Move Gaussians at random, in place, after a step; `rate` is that of the means, in m."""
+        """Move Gaussians at random, in place, after a step; `rate` is that of the means, in m.
+
+        Args:
+            params: of the Gaussians, by group.
+            extent: of the scene, in meters.
+            rate: learning rate of the means.
+            step: of the fit.
+        """
         del params, extent, rate, step
 
 
@@ -150,18 +170,33 @@ class NoControl(DensityControl):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """None."""
+        """None.
+
+        Args:
+            params: not used.
+            grad2d: not used.
+            extent: not used.
+            step: not used.
+        """
         del params, grad2d, extent, step
         return None
 
 
 def opacities(params: Params) -> Array:
-    """(N,) float64 in 0 .. 1, of the logits."""
+    """(N,) float64 in 0 .. 1, of the logits.
+
+    Args:
+        params: of the Gaussians, by group.
+    """
     return sigmoid(params["opacity_logits"].astype(np.float64))
 
 
 def logits(opacity: Array) -> Array:
-    """The inverse of the sigmoid, (N,) float64, finite for 0 and 1."""
+    """The inverse of the sigmoid, (N,) float64, finite for 0 and 1.
+
+    Args:
+        opacity: (N,) in 0 to 1.
+    """
     held = np.clip(opacity, 1e-7, 1 - 1e-7)
     return np.asarray(log(held) - log1p(-held))
 
@@ -169,7 +204,13 @@ def logits(opacity: Array) -> Array:
 def rebuilt(
     params: Params, kept: Array, added: Mapping[str, Array]
 ) -> tuple[dict[str, Array], RowMap]:
-    """The rows `kept` (M,) in their order, then those of `added`, which are fresh."""
+    """The rows `kept` (M,) in their order, then those of `added`, which are fresh.
+
+    Args:
+        params: of the Gaussians, by group.
+        kept: (M,) numbers of rows.
+        added: rows of each group.
+    """
     after: dict[str, Any] = {
         name: np.concatenate([array[kept], added[name].astype(array.dtype)])
         for name, array in params.items()

@@ -13,12 +13,12 @@ from photograd_course.portable_math import log, norm, root
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._fit_options import FitOptions
 from photograd.capture.bounds import mean_coverage, silhouettes_of
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.view import View, display_color
-from photograd.errors import RangeError, message
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.density import DensityControl, NoControl, Schedule, logits
 from photograd.splats.markov_chain import MarkovChain
@@ -60,11 +60,18 @@ def start_gaussians(
     points if it has a hundred; else at `count` random points of the box (2, 3), where the
     photographs have alpha only those that no silhouette excludes.
 
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of random points.
+        degree: of the harmonics.
+        seed: of random points.
+        given: points and their display colors, or None.
+
     Raises:
         RangeError: `count` below 1, or a degree that splats do not have.
     """
-    if count < 1:
-        raise RangeError(message("start_gaussians", "count", "at least 1", count))
+    Arguments("start_gaussians").integer("count", count, low=1)
     if given is not None:
         points, colors = given
         size = neighbor_distance(points)
@@ -84,6 +91,12 @@ def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussia
     """Round, faint Gaussians at points (N, 3) with scales (N,), of display colors (N, 3).
 
     In float32.
+
+    Args:
+        points: (N, 3).
+        size: (N,) in meters.
+        colors: (N, 3).
+        degree: of the harmonics.
 
     Raises:
         RangeError: a degree that splats do not have.
@@ -130,6 +143,12 @@ def random_points(
     """`count` points (N, 3) uniform in the box, or in the visual hull inside of it.
 
     Also the volume that they fill, in cubic meters, and a sentence on them.
+
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of points.
+        seed: of their choice.
     """
     silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
     carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
@@ -154,6 +173,11 @@ def mean_colors(views: Sequence[View], points: Array, *, max_views: int = 24) ->
     """(N, 3) display colors: the mean of the pixels that points (N, 3) land on; gray for none.
 
     Nothing is hidden by anything here, which is good enough to begin with.
+
+    Args:
+        views: the photographs.
+        points: (N, 3).
+        max_views: at most so many, evenly spaced.
     """
     total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
     for view in views[:: max(1, len(views) // max_views)]:
@@ -228,6 +252,10 @@ def scene_extent(capture: Capture, box: Array) -> float:
     """1.1 times the greatest distance of a camera from their mean, in meters [Kerbl2023].
 
     Cameras that all stand in one place say nothing: then half the diagonal of the box.
+
+    Args:
+        capture: whose cameras are asked.
+        box: (2, 3) of the scene.
     """
     positions = np.array([view.camera.position for view in capture.train])
     spread = float(np.linalg.norm(positions - positions.mean(axis=0), axis=1).max())

@@ -22,10 +22,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from photograd_course.atomic_io import atomic_write
 from photograd_course.color import srgb_encode
 
+from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._files import read_npz
 from photograd._notebook import png, smaller
-from photograd.errors import Error, IoError, RangeError, ShapeError, message
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.types import Array
 
 VERSION = 1
@@ -48,6 +49,9 @@ class Accumulation:
     @classmethod
     def empty(cls, height: int, width: int) -> Accumulation:
         """No samples yet.
+
+        Args:
+            height, width: of the picture, in pixels.
 
         Raises:
             RangeError: more pixels than there is memory for.
@@ -107,18 +111,27 @@ class Accumulation:
     ) -> None:
         """Check a call that adds samples to these sums; its arguments are called so.
 
+        Args:
+            function: that was called, for errors.
+            shape: (H, W) that the sums must have.
+            count: samples to be added.
+            name: of the argument that is these sums.
+            many: of the argument that is the count.
+
         Raises:
             RangeError: a count below 1.
             ShapeError: sums of another shape than (H, W).
         """
-        if count < 1:
-            raise RangeError(message(function, many, "at least 1", count))
-        if self.radiance.shape != (*shape, 3):
-            expected = f"shape {(*shape, 3)}"
-            raise ShapeError(message(function, name, expected, self.radiance.shape))
+        call = Arguments(function, np.float64)
+        call.integer(many, count, low=1)
+        call.array(name, self.radiance, (*shape, 3), finite=False)
 
     def check_finite(self, function: str) -> None:
-        """Raise Error that names the first pixel with a sum that is not finite."""
+        """Raise Error that names the first pixel with a sum that is not finite.
+
+        Args:
+            function: on whose behalf the error speaks.
+        """
         if not np.isfinite(self.radiance).all():
             row, column = np.argwhere(~np.isfinite(self.radiance))[0][:2]
             got = f"a value that is not, first in pixel ({column}, {row})"
@@ -126,6 +139,10 @@ class Accumulation:
 
     def save(self, path: Path, key: dict[str, Any]) -> None:
         """Write the sums and `key`, which says what they belong to; the file is replaced at once.
+
+        Args:
+            path: of the file.
+            key: plain values, as JSON has them.
 
         Raises:
             IoError: the file cannot be written.
@@ -138,6 +155,10 @@ class Accumulation:
 
 def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
     """The sums that `Accumulation.save` wrote for the same key.
+
+    Args:
+        path: of the file.
+        key: that the file must have.
 
     Raises:
         IoError: missing or damaged, or of another scene, seed or options.

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from photograd._checks import require_choices
-from photograd.errors import RangeError, message
+from photograd._checks import require_bounds, require_choices
 
 Strategy = Literal["light", "bsdf", "mis"]
 Heuristic = Literal["balance", "power"]
@@ -48,14 +47,15 @@ class PathOptions:
 
     def __post_init__(self) -> None:
         require_choices(self)
-        if not 1 <= self.max_depth <= 4096:
-            raise RangeError(message("PathOptions", "max_depth", "1 to 4096", self.max_depth))
-        if self.roulette_from is not None and self.roulette_from < 0:
-            got = self.roulette_from
-            raise RangeError(message("PathOptions", "roulette_from", "at least 0", got))
+        require_bounds(self, "max_depth", low=1, high=4096)
+        require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int, int, int, int]:
-        """As the core takes them."""
+        """As the core takes them.
+
+        Args:
+            seed: of all random numbers.
+        """
         late = NEVER if self.roulette_from is None else self.roulette_from
         strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
         sampler = SAMPLERS.index(self.sampler)

@@ -24,7 +24,7 @@ import numpy as np
 from photograd_course.color import srgb_decode
 
 from photograd._arrays import Arguments
-from photograd._checks import require_choices, typed
+from photograd._checks import require_bounds, require_choices, typed
 from photograd.errors import RangeError, message
 from photograd.images.read import read_header, read_image
 from photograd.textures import sample
@@ -103,7 +103,13 @@ class NormalMap:
     def from_image(
         cls, image: Array, scale: float = 1.0, wrap: Wrap = ("repeat", "repeat")
     ) -> NormalMap:
-        """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt."""
+        """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt.
+
+        Args:
+            image: (H, W, C).
+            scale: factor on x and y of the normals.
+            wrap: along u and v.
+        """
         values = 2 * np.asarray(image, np.float32)[..., :3] - 1
         return cls(values * np.array([scale, scale, 1], np.float32), wrap)
 
@@ -131,11 +137,13 @@ class OcclusionMap:
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("OcclusionMap", self.values, (1,)))
         require_choices(self)
-        if not 0 <= self.strength <= 1:
-            raise RangeError(message("OcclusionMap", "strength", "0 to 1", self.strength))
+        require_bounds(self, "strength", low=0, high=1)
 
     def at(self, uv: Array) -> Array:
         """The factor (N,) of ambient light at texture coordinates (N, 2), bilinear, float32.
+
+        Args:
+            uv: (N, 2).
 
         Raises:
             ShapeError, RangeError: as `photograd.textures.sample`.
@@ -179,7 +187,11 @@ def read_texture(
 
 
 def decode(color: Array) -> Array:
-    """Display-encoded sRGB as linear float32."""
+    """Display-encoded sRGB as linear float32.
+
+    Args:
+        color: (..., C) display values.
+    """
     encoded = np.ravel(color)
     linear = np.empty(encoded.shape, np.float32)
     for start in range(0, encoded.size, 1 << 16):  # in double, but never all of it

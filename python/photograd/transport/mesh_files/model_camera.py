@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
@@ -31,15 +31,17 @@ class ModelCamera:
     aspect: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 < self.field_of_view < np.pi:
-            expected = "radians between 0 and pi"
-            raise RangeError(message("ModelCamera", "field_of_view", expected, self.field_of_view))
-        if self.aspect is not None and not 0 < self.aspect < np.inf:
-            raise RangeError(message("ModelCamera", "aspect", "a number above 0", self.aspect))
+        require_bounds(self, "field_of_view", above=0, below=np.pi)
+        require_bounds(self, "aspect", above=0)
 
     @classmethod
     def of(cls, camera: Camera, name: str = "camera") -> ModelCamera:
-        """What a file can say of a camera: `camera_changes` names what it cannot."""
+        """What a file can say of a camera: `camera_changes` names what it cannot.
+
+        Args:
+            camera: to be written.
+            name: in the file.
+        """
         angle = 2 * float(np.arctan(0.5 * camera.height / camera.fy))
         return cls(name, angle, camera.world_from_camera, camera.width / camera.height)
 
@@ -47,6 +49,9 @@ class ModelCamera:
         """With square pixels; the vertical field of view holds, whatever the width.
 
         Raises what `Camera` raises.
+
+        Args:
+            width, height: of the picture, in pixels.
         """
         focal = 0.5 * height / float(np.tan(0.5 * self.field_of_view))
         return Camera(width, height, focal, focal, width / 2, height / 2, self.world_from_camera)
