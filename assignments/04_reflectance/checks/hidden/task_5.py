@@ -15,7 +15,7 @@ from .common import painted
     needs=("ggx_lobe",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes with materials that are not known beforehand",
+    sole="the same mistakes with unseen materials",
     battery=[Subject("gltf", painted, lambda n: Array((n, 3)), rows=range(5))],
 )
 def materials_anywhere(t):

@@ -13,7 +13,7 @@ from ..task_3 import arrivals, refracted
     calls=("refract",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at directions that are not known beforehand",
+    sole="the same mistakes at unseen directions",
     battery=[
         Subject(
             "refract",

@@ -13,7 +13,7 @@ from ..task_2 import weights_of
     calls=("mis_weight",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="densities that are not known beforehand",
+    sole="unseen densities",
     battery=[
         Subject(
             "mis_weight",

@@ -13,7 +13,7 @@ from ..task_2 import unit
     calls=("ray_batch",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at cameras that are not known beforehand",
+    sole="the same mistakes at unseen cameras",
     battery=[
         Subject(
             "ray_batch",

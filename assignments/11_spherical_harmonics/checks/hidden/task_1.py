@@ -13,7 +13,7 @@ from ..common import EXACT, basis
     calls=("sh_basis",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at directions that are not known beforehand",
+    sole="the same mistakes at unseen directions",
     battery=[
         Subject(
             "sh_basis",

@@ -16,7 +16,7 @@ from .common import derivatives, values
     adjoints=("composite",),
     visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.composite",
