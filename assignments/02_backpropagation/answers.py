@@ -1,4 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
-"""Between the checks and your `path_tracing.py`: what needs a generator.
+"""Between the checks and your `path_tracing.py`: functions that need a generator.
 
-Runs beside your file; nothing here is to be changed or handed in.
+Runs beside your file; do not change or submit it.
 """
 
 import numpy as np

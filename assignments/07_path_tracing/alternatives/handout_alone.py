@@ -42,7 +42,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
     if proposal is None:
         proposal = scene
     radiance = np.zeros((len(hit["thing"]), 3))
-    # A place on a lamp.
+    # A place on a light.
     wi, distance, thing = sample_light(proposal, hit["points"], u_light)
     there = see(scene, hit["points"], wi)
     p = light_pdf(proposal, thing, wi, distance)

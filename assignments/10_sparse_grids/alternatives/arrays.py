@@ -57,7 +57,7 @@ def skip_empty(leaf, first, stride, count):
 
 
 def voxel_hash_insert(table, voxels, rows):
-    # All look at once; of those who want the same free slot, the first in the list gets it.
+    # All search at once; of several voxels at one free slot, the first in the list gets it.
     table = np.array(table)
     _, last = np.unique(voxels[::-1], axis=0, return_index=True)
     keep = np.sort(len(voxels) - 1 - last)

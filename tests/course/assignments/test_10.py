@@ -229,7 +229,11 @@ ENTRY = "entry = table[(slot + probe) % len(table)]"
 OLD = "old = voxel_hash_find(table, chosen)"
 # Mistakes that no mutant's fingerprint meets, as everybody makes them a little differently.
 LIKELY = {
-    "add up": ("10.4.transpose", ADD, "for c in range(8):\n        d_values[row[c]] += parts[c]"),
+    "accumulate": (
+        "10.4.transpose",
+        ADD,
+        "for c in range(8):\n        d_values[row[c]] += parts[c]",
+    ),
     "mod S": ("10.3.found", ENTRY, "entry = table[slot + probe]"),
     "old table": ("10.6.chain", OLD, "old = np.arange(len(chosen)); old[len(voxels):] = -1"),
     "stands still": ("10.2.faces", "np.maximum(jump, 1)", "jump"),
@@ -285,4 +289,4 @@ def test_the_exploration_runs_with_a_capture_and_beside_the_core(tmp_path: Path)
         assert float(done.stdout.split("largest shares ")[1].split()[0]) < 1e-5
         its, yours = done.stdout.split("its octree has ")[1].split(" leaves, yours ")
         assert int(its) == int(yours.split()[0])
-        assert "all voxels active; values as they were" in done.stdout
+        assert "all voxels active; values are the same" in done.stdout

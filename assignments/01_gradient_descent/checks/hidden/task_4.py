@@ -22,7 +22,7 @@ from .common import FAR, bowls
     ],
 )
 def a_parabola_swings_as_two_roots_say(t):
-    """On a bowl each part of the walk is a sum of two powers, damped waves among them."""
+    """On a quadratic each component is a sum of two powers, damped oscillations among them."""
     curvatures = np.array([0.1, 1.0, 6.0]) * t.rng.uniform(0.9, 1.1, 3)
     x0, n = t.rng.uniform(1.0, 2.0, 3), 25
     tau, beta = 0.3, float(t.rng.uniform(0.6, 0.85))

@@ -11,7 +11,7 @@ from ..common import EXACT, gates_spec
     points=3,
     calls=("Value.exp", "Value.log", "Value.__pow__"),
     tolerance=EXACT,
-    sole="the same mistakes, to rounding, at places not known beforehand",
+    sole="the same mistakes, to rounding, at unseen places",
 )
 def gates_of_one_input_at_random(t):
     """exp, log and powers are right at 100 random places."""
@@ -24,4 +24,4 @@ def gates_of_one_input_at_random(t):
     for op, b, values, slopes in cases:
         found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
         t.close(f"values of {op}", found["values"], values)
-        t.close(f"slopes of {op}", found["slopes"][:, 0], slopes)
+        t.close(f"local derivatives of {op}", found["slopes"][:, 0], slopes)

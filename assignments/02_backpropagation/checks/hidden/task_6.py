@@ -10,7 +10,7 @@ STEPS = Tolerance(1e-3, "x + h is rounded: 1e-11 of h; a step half or twice as l
 
 
 def checked_place(t, n):
-    """What `grad_check` takes, for n numbers."""
+    """Arguments of `grad_check`, for n numbers."""
     return smooth(t.rng, n)
 
 

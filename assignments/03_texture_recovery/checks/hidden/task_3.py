@@ -12,7 +12,7 @@ from .common import measured
     calls=("loss_and_grad",),
     needs=("bilinear_sample", "bilinear_sample_adjoint"),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("loss_and_grad", measured, lambda _: Items(Number(), Array((3, 5, 2))))],
 )
 def loss_and_gradient_of_random_textures(t):

@@ -12,7 +12,7 @@ def tile(n):
 
 
 def tiled(t, n):
-    """What `build_mips` takes."""
+    """Arguments of `build_mips`."""
     return (t.rng.uniform(-1.0, 1.0, tile(n)),)
 
 

@@ -18,11 +18,11 @@ def some_model(t, n):
     points=2,
     calls=("furnace",),
     tolerance=EXACT,
-    sole="the same mistakes with models that are not known beforehand",
+    sole="the same mistakes with unseen models",
     battery=[Subject("furnace", some_model, lambda n: Array((n, 2)), rows=(1,))],
 )
 def other_models(t):
-    """A model that nobody has seen is integrated rightly."""
+    """An unseen model is integrated rightly."""
     a, b = t.rng.uniform(0.5, 2.0, (3, 2)), t.rng.uniform(0.3, 1.0, (1, 2))
     cosines = t.rng.uniform(0.1, 1.0, 3)
 

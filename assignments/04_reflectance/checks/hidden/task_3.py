@@ -13,7 +13,7 @@ from .common import pairs
     calls=("ggx_pdf",),
     needs=("ggx_lobe",),
     tolerance=SHARP,
-    sole="the same mistakes at directions that are not known beforehand",
+    sole="the same mistakes at unseen directions",
     battery=[Subject("ggx_pdf", pairs, lambda n: Array((n,)), rows=(0, 1, 2))],
 )
 def densities_anywhere(t):

@@ -14,7 +14,7 @@ from .common import painted
     calls=("gltf",),
     needs=("ggx_lobe",),
     tolerance=EXACT,
-    sole="the same mistakes with materials that are not known beforehand",
+    sole="the same mistakes with unseen materials",
     battery=[Subject("gltf", painted, lambda n: Array((n, 3)), rows=range(5))],
 )
 def materials_anywhere(t):

@@ -9,7 +9,7 @@ from ..task_1 import hit, rays_onto, rays_within
 
 
 def struck(t, n):
-    """What `hit_sphere` takes: n rays near a sphere."""
+    """Arguments of `hit_sphere`: n rays near a sphere."""
     return t.rng.uniform(-6, 6, (n, 3)), unit_vectors(t.rng, n) * lengths(t, n), *sphere(t)
 
 
@@ -18,7 +18,7 @@ def struck(t, n):
     points=2,
     calls=("hit_sphere",),
     tolerance=EXACT,
-    sole="the same mistakes at spheres that are not known beforehand",
+    sole="the same mistakes at unseen spheres",
     battery=[Subject("hit_sphere", struck, distances, rows=(0, 1))],
 )
 def spheres_at_random(t):

@@ -8,7 +8,7 @@ from ..task_2 import aimed, inner_parts, outer_parts, triangles
 
 
 def crossed(t, n):
-    """What `hit_triangle` takes: n triangles, every other one missed."""
+    """Arguments of `hit_triangle`: n triangles, every other one missed."""
     parts = np.concatenate([inner_parts(t, n - n // 2), outer_parts(t, n // 2)])
     return aimed(t, n, parts, t.rng.uniform(-2, 5, n))
 
@@ -18,13 +18,13 @@ def crossed(t, n):
     points=2,
     calls=("hit_triangle",),
     tolerance=EXACT,
-    sole="the same mistakes at triangles that are not known beforehand",
+    sole="the same mistakes at unseen triangles",
     battery=[
         Subject("hit_triangle", crossed, lambda n: Items(distances(n), Array((n, 2))), rows=(2,))
     ],
 )
 def triangles_at_random(t):
-    """Random rays and triangles, met and missed."""
+    """Random rays and triangles, hit and missed."""
     for _ in range(4):
         parts = np.concatenate([inner_parts(t, 20), outer_parts(t, 20)])
         ahead = t.rng.uniform(-2, 5, 40)

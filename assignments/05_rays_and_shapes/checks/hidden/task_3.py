@@ -12,7 +12,7 @@ from ..task_3 import arrivals, refracted
     points=2,
     calls=("refract",),
     tolerance=EXACT,
-    sole="the same mistakes at directions that are not known beforehand",
+    sole="the same mistakes at unseen directions",
     battery=[
         Subject(
             "refract",

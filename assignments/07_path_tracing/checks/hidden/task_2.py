@@ -12,7 +12,7 @@ from ..task_2 import weights_of
     points=1,
     calls=("mis_weight",),
     tolerance=EXACT,
-    sole="densities that are not known beforehand",
+    sole="unseen densities",
     battery=[
         Subject(
             "mis_weight",

@@ -10,7 +10,7 @@ from ..common import EXACT, random_rays, seen
     points=2,
     calls=("composite",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject("composite", random_rays, lambda n: seen(n, 3), rows=(0, 1, 2)),
         Subject(

@@ -7,7 +7,7 @@ from ..task_3 import spans
 
 
 def cast(t, n):
-    """What `ray_box` takes: n rays about a box, some of which hit."""
+    """Arguments of `ray_box`: n rays about a box, some of which hit."""
     return *random_box(t), t.rng.uniform(-2.0, 2.0, (n, 3)), t.rng.normal(size=(n, 3))
 
 
@@ -16,7 +16,7 @@ def cast(t, n):
     points=2,
     calls=("ray_box",),
     tolerance=EXACT,
-    sole="the same mistakes at rays that are not known beforehand",
+    sole="the same mistakes at unseen rays",
     battery=[Subject("ray_box", cast, spans, rows=(2, 3))],
 )
 def random_rays_and_boxes(t):

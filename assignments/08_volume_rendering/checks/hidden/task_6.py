@@ -8,7 +8,7 @@ from .common import SUMS
 
 
 def pictured(t, n):
-    """What `render_adjoint` takes for n rays of 5 steps."""
+    """Arguments of `render_adjoint` for n rays of 5 steps."""
     background, d_pixel = t.rng.uniform(0.0, 1.0, 3), t.rng.uniform(-1.0, 1.0, (n, 3))
     return *random_view(t, n, (4, 3, 5)), 5, background, d_pixel
 
@@ -19,7 +19,7 @@ def pictured(t, n):
     calls=("render_adjoint",),
     needs=EARLIER,
     tolerance=SUMS,
-    sole="the same mistakes in views that are not known beforehand",
+    sole="the same mistakes in unseen views",
     battery=[Subject("render_adjoint", pictured, lambda _: slopes_of_view((4, 3, 5)))],
 )
 def the_picture_of_a_random_volume(t):

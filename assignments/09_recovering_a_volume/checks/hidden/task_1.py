@@ -12,7 +12,7 @@ from .common import alike
     points=1,
     calls=("psnr",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("psnr", alike, lambda _: Number(), tolerance=DECIBELS)],
 )
 def decibels_of_random_pictures(t):

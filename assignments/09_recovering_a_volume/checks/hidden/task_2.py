@@ -12,7 +12,7 @@ from ..task_2 import unit
     points=3,
     calls=("ray_batch",),
     tolerance=EXACT,
-    sole="the same mistakes at cameras that are not known beforehand",
+    sole="the same mistakes at unseen cameras",
     battery=[
         Subject(
             "ray_batch",

@@ -11,7 +11,7 @@ from .common import alike
     points=2,
     calls=("mse_and_cotangent",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("mse_and_cotangent", alike, lambda n: loss_and_slope((n, 3)))],
 )
 def losses_of_random_batches(t):

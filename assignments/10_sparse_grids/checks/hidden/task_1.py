@@ -7,7 +7,7 @@ from ..task_1 import cells_of, octree
 
 
 def halved(t, n):
-    """What `octree_from_dense` takes: a cube whose side is the power of two up to n."""
+    """Arguments of `octree_from_dense`: a cube whose side is the power of two up to n."""
     return (blocks(t, 1 << n.bit_length() - 1, 0.9),)
 
 
@@ -15,7 +15,7 @@ def halved(t, n):
     "10.1.hidden",
     points=2,
     calls=("octree_from_dense",),
-    sole="the same mistakes in cubes that are not known beforehand",
+    sole="the same mistakes in unseen cubes",
     battery=[
         Subject(
             "octree_from_dense",

@@ -8,7 +8,7 @@ from ..task_2 import counting_leaf, rays_within, same_samples, skipped
 
 
 def skipping(t, n):
-    """What `skip_empty` takes, for n rays."""
+    """Arguments of `skip_empty`, for n rays."""
     return counting_leaf(blocks(t, 8, 0.9), []), *rays_within(t, 8, n, 20), 20
 
 
@@ -16,7 +16,7 @@ def skipping(t, n):
     "10.2.hidden",
     points=6,
     calls=("skip_empty",),
-    sole="the same mistakes on rays that are not known beforehand",
+    sole="the same mistakes on unseen rays",
     battery=[
         Subject(
             "skip_empty",

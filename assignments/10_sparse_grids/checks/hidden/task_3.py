@@ -8,7 +8,7 @@ from ..task_3 import crowd, free_table, insert, require_sound, some_voxels
 
 
 def inserted(t, n):
-    """What `voxel_hash_insert` takes, for n voxels."""
+    """Arguments of `voxel_hash_insert`, for n voxels."""
     return free_table(16), some_voxels(t, n), t.rng.permutation(n)
 
 
@@ -16,7 +16,7 @@ def inserted(t, n):
     "10.3.hidden",
     points=1,
     calls=("voxel_hash_insert",),
-    sole="the same mistakes at voxels that are not known beforehand",
+    sole="the same mistakes at unseen voxels",
     battery=[
         Subject(
             "voxel_hash_insert",

@@ -12,7 +12,7 @@ from ..common import EXACT, basis
     points=4,
     calls=("sh_basis",),
     tolerance=EXACT,
-    sole="the same mistakes at directions that are not known beforehand",
+    sole="the same mistakes at unseen directions",
     battery=[
         Subject(
             "sh_basis",

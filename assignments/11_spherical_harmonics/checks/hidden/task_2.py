@@ -8,7 +8,7 @@ from ..common import EXACT
 
 
 def weighted(t, n):
-    """What `sh_project` takes, for n directions."""
+    """Arguments of `sh_project`, for n directions."""
     return unit_vectors(t.rng, n), t.rng.uniform(0.1, 1.0, n), t.rng.uniform(-1.0, 1.0, (n, 2)), 3
 
 
@@ -18,7 +18,7 @@ def weighted(t, n):
     calls=("sh_project",),
     needs=("sh_basis",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("sh_project", weighted, lambda _: Array((16, 2)))],
 )
 def projections_of_random_values(t):

@@ -9,7 +9,7 @@ from .common import derivatives, values
 
 
 def turned_shapes(t, n):
-    """What `covariance` takes."""
+    """Arguments of `covariance`."""
     return 3 * t.rng.normal(size=(n, 4)), t.rng.uniform(-2.0, 1.0, (n, 3))
 
 
@@ -19,7 +19,7 @@ def turned_shapes(t, n):
     calls=("covariance",),
     adjoints=("covariance",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.covariance",

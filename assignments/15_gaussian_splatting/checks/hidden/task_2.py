@@ -9,13 +9,13 @@ from ..task_2 import folded, outside, seen, seen_back, shapes
 
 
 def projected(t, n):
-    """What `project` takes."""
+    """Arguments of `project`."""
     camera = some_camera(t.rng)
     return in_world(camera, ahead(t.rng, n)), shapes(t.rng, n), camera
 
 
 def pulled(t, n):
-    """What the `back` of `project` takes, after what `project` takes."""
+    """Arguments of the `back` of `project`, after those of `project`."""
     return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
 
 
@@ -25,7 +25,7 @@ def pulled(t, n):
     calls=("project",),
     adjoints=("project",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.project",

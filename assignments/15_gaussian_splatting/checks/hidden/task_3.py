@@ -14,7 +14,7 @@ from .common import derivatives, values
     calls=("screen_alpha",),
     adjoints=("screen_alpha",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.screen_alpha",

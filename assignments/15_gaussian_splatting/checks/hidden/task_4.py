@@ -15,7 +15,7 @@ from .common import derivatives, values
     calls=("composite",),
     adjoints=("composite",),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.composite",

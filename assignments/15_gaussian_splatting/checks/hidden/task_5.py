@@ -9,7 +9,7 @@ from .common import values
 
 
 def pictured(t, n):
-    """What `render` takes: five Gaussians, n pixels."""
+    """Arguments of `render`: five Gaussians, n pixels."""
     camera = some_camera(t.rng)
     pixels, background = middle_pixels(t.rng, camera, n), t.rng.uniform(0.0, 1.0, 3)
     return some_scene(t.rng, camera, 5), camera, pixels, background
@@ -21,7 +21,7 @@ def pictured(t, n):
     calls=("render",),
     needs=EARLIER,
     tolerance=EXACT,
-    sole="the same mistakes at unknown scenes, and what the way back costs",
+    sole="the same mistakes at unknown scenes, and the cost of the backward pass",
     battery=[
         Subject(
             "adapters.render", pictured, lambda n: Array((n, 3)), right=values("render"), rows=(2,)
