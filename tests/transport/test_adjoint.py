@@ -148,7 +148,7 @@ def test_bad_arguments_are_named() -> None:
     tracer = PathTracer(cornell_box(4))
     with pytest.raises(ShapeError, match="d_image: expected shape"):
         tracer.render_backward(np.zeros((3, 4, 3)), spp=1, seed=0)
-    with pytest.raises(RangeError, match="spp: expected at least 1"):
+    with pytest.raises(RangeError, match="spp: expected an integer at least 1"):
         tracer.render(spp=0, seed=0)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         tracer.add_samples(Accumulation.empty(3, 4), 1, seed=0)

@@ -180,7 +180,7 @@ def test_spelling_and_mistakes() -> None:
     ):
         with pytest.raises(RangeError, match="direction_of: parameter"):
             direction_of(params, spelling)
-    with pytest.raises(RangeError, match="spp: expected at least 1"):
+    with pytest.raises(RangeError, match="spp: expected an integer at least 1"):
         derivative_image(tracer, "emission.lamp", spp=0, seed=0)
     bad: tuple[tuple[dict[str, Any], type[Exception]], ...] = (
         ({"emission.lamp": np.ones(2)}, ShapeError),

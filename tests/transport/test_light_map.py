@@ -217,7 +217,7 @@ def test_parts_add_up_and_seeds_differ() -> None:
 
 def test_mistakes_are_named() -> None:
     tracer = PathTracer(stage(GRAY))
-    with pytest.raises(RangeError, match="particles: expected at least 1"):
+    with pytest.raises(RangeError, match="particles: expected an integer at least 1"):
         trace_light(tracer, patch(2), 0, seed=0)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         trace_light(tracer, patch(2), 1, seed=0, sums=Accumulation.empty(3, 2))

@@ -20,6 +20,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from photograd_course.atomic_io import atomic_write
+from photograd_course.checks import require_integer
 from photograd_course.color import srgb_encode
 
 from photograd._checks import typed
@@ -118,11 +119,10 @@ class Accumulation:
             many: of the argument that is the count.
 
         Raises:
-            RangeError: a count below 1.
+            DtypeError, RangeError: a count that is no whole number, or below 1.
             ShapeError: sums of another shape than (H, W).
         """
-        if count < 1:
-            raise RangeError(message(function, many, "at least 1", count))
+        require_integer(function, many, count, least=1)
         if self.radiance.shape != (*shape, 3):
             expected = f"shape {(*shape, 3)}"
             raise ShapeError(message(function, name, expected, self.radiance.shape))

@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from photograd_course.checks import require_integer
 from photograd_course.suggest import choose_from
 
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
-from photograd.errors import RangeError, SceneError, message
+from photograd.errors import SceneError, message
 from photograd.geometry import sdf
 from photograd.lights import EnvironmentMap, QuadLight
 from photograd.transport.material import Material
@@ -350,7 +351,7 @@ def builtin_scene(name: str, size: int = 256) -> Scene:
 
     Raises:
         SceneError: no such scene; names the nearest.
-        RangeError: size below 1.
+        DtypeError, RangeError: size that is no whole number, or below 1.
 
     Example:
         >>> room = photograd.builtin_scene("cornell-box", 16)
@@ -360,8 +361,7 @@ def builtin_scene(name: str, size: int = 256) -> Scene:
     if name not in BUILTIN:
         known = choose_from(name, BUILTIN)
         raise SceneError(message("builtin_scene", "name", "a built-in scene", name, known))
-    if size < 1:
-        raise RangeError(message("builtin_scene", "size", "at least 1 pixel", size))
+    require_integer("builtin_scene", "size", size, least=1)
     return BUILTIN[name](size)
 
 

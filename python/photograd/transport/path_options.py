@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from photograd._checks import require_choices
+from photograd_course.checks import require_integer
+
+from photograd._checks import require_choices, require_instance
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 
 Strategy = Literal["light", "bsdf", "mis"]
@@ -59,7 +62,11 @@ class PathOptions:
 
         Args:
             seed: of all random numbers.
+
+        Raises:
+            DtypeError, RangeError: no whole number, or none from 0 to 2^64 - 1.
         """
+        seed = require_integer("PathTracer", "seed", seed, least=0, most=(1 << 64) - 1)
         late = NEVER if self.roulette_from is None else self.roulette_from
         strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
         sampler = SAMPLERS.index(self.sampler)
@@ -67,3 +74,23 @@ class PathOptions:
 
 
 DEFAULTS = PathOptions()
+
+
+def checked_view(function: str, own: Camera, camera: Camera | None, options: PathOptions) -> Camera:
+    """The camera of a rendering.
+
+    Args:
+        function: on whose behalf the error speaks.
+        own: of the scene.
+        camera: that was given, or None.
+        options: that were given.
+
+    Raises:
+        DtypeError: no `Camera`, or no `PathOptions`.
+    """
+    require_instance(function, "options", options, PathOptions)
+    if camera is None:
+        return own
+    remedy = "pass its .camera" if hasattr(camera, "camera") else None
+    require_instance(function, "camera", camera, Camera, remedy)
+    return camera
