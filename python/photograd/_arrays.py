@@ -11,6 +11,7 @@ all arguments of a call, and the function computes in that precision.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from types import EllipsisType
 from typing import Any
@@ -66,7 +67,7 @@ class Arguments:
             name: of the argument, for errors.
             value: an array, a nested list, or a number.
             shapes: those that are accepted, such as ("N", 3); the first that fits names its axes.
-            dtype: of this argument alone; an integer type refuses fractions.
+            dtype: of this argument alone; an integer type refuses fractions, bool refuses numbers.
             floating: refuses arrays of integers, such as images of bytes, in place of converting.
             finite: whether NaN and infinity are refused; bounds refuse NaN in any case.
             min_length: of the named axes.
@@ -82,6 +83,52 @@ class Arguments:
         bounds = (low, high, above, below)
         self._check_range(name, array, finite and array.dtype.kind == "f", bounds)
         return array
+
+    def number(
+        self,
+        name: str,
+        value: Any,
+        *,
+        low: float | None = None,
+        high: float | None = None,
+        above: float | None = None,
+        below: float | None = None,
+    ) -> float:
+        """`value` as a finite number within bounds; arguments as of `array`.
+
+        Raises:
+            DtypeError: no real number; true and false are none.
+            RangeError: not finite, or out of bounds.
+        """
+        if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+            self._refuse(DtypeError, name, "a number", shortened(value))
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        inside = (low is None or number >= low) and (high is None or number <= high)
+        inside = inside and (above is None or number > above) and (below is None or number < below)
+        if not (inside and math.isfinite(number)):
+            expected = f"a finite number{_interval(low, high, above, below)}"
+            self._refuse(RangeError, name, expected, shortened(value))
+        return number
+
+    def integer(
+        self, name: str, value: Any, *, low: int | None = None, high: int | None = None
+    ) -> int:
+        """`value` as a whole number within bounds, both included.
+
+        Raises:
+            DtypeError: no integer; 3.0, true and false are none.
+            RangeError: out of bounds.
+        """
+        if isinstance(value, bool) or not isinstance(value, int | np.integer):
+            self._refuse(DtypeError, name, "a whole number", shortened(value))
+        number = int(value)
+        if (low is not None and number < low) or (high is not None and number > high):
+            expected = f"a whole number{_interval(low, high, None, None)}"
+            self._refuse(RangeError, name, expected, number)
+        return number
 
     def box(self, name: str, value: Any, axes: int = 3) -> Array:
         """Corners (2, axes), lower below upper along each axis; converted as by `array`.
@@ -105,6 +152,8 @@ class Arguments:
     def _converted(
         self, name: str, value: Any, stated: npt.DTypeLike | None, floating: bool
     ) -> Array:
+        if stated is not None and np.dtype(stated) == np.bool_:
+            return self._truths(name, value)
         array = _numbers(self.function, name, value)
         if stated is not None or self._converts:
             target = np.dtype(self.dtype if stated is None else stated)
@@ -117,6 +166,13 @@ class Arguments:
             target = self._call_dtype(name, array, isinstance(value, np.ndarray) and value.ndim > 0)
         with np.errstate(over="ignore"):  # what float32 cannot hold becomes infinite
             return np.asarray(array, target, order="C")
+
+    def _truths(self, name: str, value: Any) -> Array:
+        array = np.asarray(value)
+        if array.dtype != np.bool_:
+            got = f"an array of {array.dtype}"
+            self._refuse(DtypeError, name, "an array of bool", got, "compare first")
+        return np.asarray(array, order="C")
 
     def _call_dtype(self, name: str, array: Array, has_dtype: bool) -> np.dtype[Any]:
         """The dtype of the call, which the first array decides."""
@@ -195,7 +251,8 @@ class Arguments:
         if all(test.all() for test in tests):
             return
         first = np.argwhere(~np.logical_and.reduce(tests))[0].tolist()
-        expected = ("finite " if finite else "") + "numbers" + _interval(*bounds)
+        what = f"{'finite ' if finite else ''}number"
+        expected = (f"{what}s" if array.ndim else f"a {what}") + _interval(*bounds)
         self._refuse(RangeError, name, expected, _told(array, first))
 
     def _refuse(
@@ -220,15 +277,25 @@ def _interval(
 ) -> str:
     if low == -np.inf and high is None:
         return ""  # anything but NaN
-    left = f"[{low:g}" if low is not None else f"({above:g}" if above is not None else ""
-    right = f"{high:g}]" if high is not None else f"{below:g})" if below is not None else ""
-    if left and right:
-        return f" in {left}, {right}"
-    if left:
-        return f" of at least {low:g}" if low is not None else f" above {above:g}"
-    if right:
-        return f" of at most {high:g}" if high is not None else f" below {below:g}"
+    left = low if low is not None else above
+    right = high if high is not None else below
+    if left is not None and right is not None:
+        ends = "(["[low is not None], ")]"[high is not None]
+        return f" in {ends[0]}{_bound(left)}, {_bound(right)}{ends[1]}"
+    if left is not None:
+        return f" {'above' if low is None else 'of at least'} {_bound(left)}"
+    if right is not None:
+        return f" {'below' if high is None else 'of at most'} {_bound(right)}"
     return ""
+
+
+def _bound(bound: float) -> str:
+    """As a text; large powers of two, and what lies one below, as such."""
+    if isinstance(bound, int):
+        for number, rest in ((abs(bound), ""), (abs(bound + 1), " - 1")):
+            if number >= 1 << 20 and number & (number - 1) == 0:
+                return f"{'-' * (bound < 0)}2^{number.bit_length() - 1}{rest}"
+    return f"{bound:g}"
 
 
 def _told(array: Array, index: list[int]) -> str:

@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_
 import numpy as np
 from numpy.typing import NDArray
 
-from photograd._arrays import shortened
+from photograd._arrays import Arguments, shortened
 from photograd.errors import DtypeError, Error, RangeError, message
 
 NameOfIndex = Callable[[tuple[int, ...]], str]
@@ -118,6 +118,20 @@ def require_choices(options: Any) -> None:
     for name, hint in get_type_hints(kind).items():
         if _has_names(hint):
             typed(kind.__name__, name, hint, getattr(options, name))
+
+
+def require_bounds(options: Any, *names: str, **bounds: float) -> None:
+    """Raise DtypeError or RangeError for fields of a dataclass that are no numbers within bounds.
+
+    `bounds` are those of `Arguments.number`; a field that may be None is left out where it is.
+    """
+    call = Arguments(type(options).__name__)
+    hints = get_type_hints(type(options))
+    for name in names:
+        kinds, value = (hints[name], *get_args(hints[name])), getattr(options, name)
+        if value is not None or NoneType not in kinds:
+            check: Any = call.integer if int in kinds else call.number
+            check(name, value, **bounds)
 
 
 def _has_names(hint: Any) -> bool:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
+from typing import Literal, get_args
 
-from photograd._checks import require_types
+from photograd._checks import require_bounds, require_types
 from photograd.errors import RangeError, message
 
-BACKGROUNDS = ("random", "white", "black", "learned")
-DENSITY_CONTROLS = ("mcmc", "clone_split_prune", "none")
+Background = Literal["random", "white", "black", "learned"]
+BackgroundOption = Literal["auto", "random", "white", "black", "learned"]
+DensityControlOption = Literal["mcmc", "clone_split_prune", "none"]
 """Of Gaussians: a fixed number that wanders, a growing one, or none."""
+BACKGROUNDS: tuple[Background, ...] = get_args(Background)
+DENSITY_CONTROLS: tuple[DensityControlOption, ...] = get_args(DensityControlOption)
 
 MAX_DEGREE = 3
 """Of spherical harmonics."""
@@ -43,7 +46,7 @@ class FitOptions:
         degree: of the spherical harmonics, 0 to `MAX_DEGREE`.
         prune: a sparse grid drops voxels that weigh less than this in every pixel; 0 drops none.
         gaussians: at most this many.
-        density_control: of Gaussians, of `DENSITY_CONTROLS`.
+        density_control: of Gaussians: "mcmc", "clone_split_prune" or "none".
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
     """
@@ -56,7 +59,7 @@ class FitOptions:
     learning_rate: float = 1.0
     final_rate: float = 0.1
     total_variation: float = 3e-5
-    background: str = "auto"
+    background: BackgroundOption = "auto"
     stop: float = 1e-4
     steps_per_voxel: float = 1.5
     refine_at: tuple[float, float] = (0.15, 0.4)
@@ -64,61 +67,21 @@ class FitOptions:
     degree: int = 2
     prune: float = 0.02
     gaussians: int = 30_000
-    density_control: str = "mcmc"
+    density_control: DensityControlOption = "mcmc"
     final_mean_rate: float = 0.01
     ssim_weight: float = 0.2
 
     def __post_init__(self) -> None:
         """Raises DtypeError or RangeError, naming the option."""
         require_types(self)
-        positive = (
-            "resolution",
-            "steps",
-            "rays",
-            "learning_rate",
-            "final_rate",
-            "steps_per_voxel",
-            "sigma_t",
-            "gaussians",
-            "final_mean_rate",
-        )
-        for name in positive:
-            if not 0 < getattr(self, name) < math.inf:
-                raise RangeError(
-                    message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
-                )
-        for name in ("resolution", "steps", "rays", "gaussians"):
-            if getattr(self, name) >= 1 << 31:
-                got = getattr(self, name)
-                raise RangeError(message("FitOptions", name, "a number below 2^31", got))
-        if not 0 <= self.seed < 1 << 64:
-            raise RangeError(message("FitOptions", "seed", "0 to 2^64 - 1", self.seed))
-        if not self.stop < 1:
-            raise RangeError(message("FitOptions", "stop", "a transmittance below 1", self.stop))
-        for name in ("total_variation", "stop", "prune"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise RangeError(
-                    message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
-                )
-        if self.degree not in range(MAX_DEGREE + 1):
-            raise RangeError(
-                message("FitOptions", "degree", f"0 to {MAX_DEGREE}", f"{self.degree}")
-            )
-        if not 0 <= self.ssim_weight <= 1:
-            raise RangeError(message("FitOptions", "ssim_weight", "0 to 1", f"{self.ssim_weight}"))
-        if self.density_control not in DENSITY_CONTROLS:
-            raise RangeError(
-                message(
-                    "FitOptions",
-                    "density_control",
-                    f"one of {DENSITY_CONTROLS}",
-                    repr(self.density_control),
-                )
-            )
-        if self.background not in (*BACKGROUNDS, "auto"):
-            raise RangeError(
-                message("FitOptions", "background", f"one of {BACKGROUNDS}", repr(self.background))
-            )
+        require_bounds(self, "resolution", "steps", "rays", "gaussians", low=1, high=2**31 - 1)
+        require_bounds(self, "learning_rate", "final_rate", "final_mean_rate", above=0)
+        require_bounds(self, "steps_per_voxel", "sigma_t", above=0)
+        require_bounds(self, "total_variation", "prune", low=0)
+        require_bounds(self, "seed", low=0, high=2**64 - 1)
+        require_bounds(self, "stop", low=0, below=1)
+        require_bounds(self, "degree", low=0, high=MAX_DEGREE)
+        require_bounds(self, "ssim_weight", low=0, high=1)
         if not 0 <= self.refine_at[0] <= self.refine_at[1] < 1:
             raise RangeError(
                 message(

@@ -34,9 +34,7 @@ def count(degree: int) -> int:
     Raises:
         RangeError: the degree is not 0 to 4.
     """
-    if degree not in range(MAX_DEGREE + 1):
-        raise RangeError(message("sh.count", "degree", f"0 to {MAX_DEGREE}", degree))
-    return (degree + 1) ** 2
+    return (Arguments("sh.count").integer("degree", degree, low=0, high=MAX_DEGREE) + 1) ** 2
 
 
 def degree_of(coefficients: int) -> int:

@@ -183,7 +183,7 @@ def test_bounds_that_are_kept() -> None:
     ("value", "error", "text"),
     [
         ([0.5], DtypeError, "^f: faces: expected integers, got float64$"),
-        ([-1], RangeError, r"expected numbers in \[0, 4.29497e\+09\], got -1 in row 0"),
+        ([-1], RangeError, r"expected numbers in \[0, 2\^32 - 1\], got -1 in row 0"),
         ([[0, 1, 1 << 32]], RangeError, "in row 0"),
     ],
 )
@@ -205,3 +205,46 @@ def test_boxes_have_a_size_along_each_axis(box: Any, error: type[Exception], tex
     with pytest.raises(error, match=text):
         Arguments("f", np.float64).box("box", box)
     assert Arguments("f", np.float64).box("box", [[0, 0], [1, 2]], 2).tolist() == [[0, 0], [1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("value", "bounds", "error", "text"),
+    [
+        ("1", {}, DtypeError, "^f: n: expected a number, got '1'$"),
+        (True, {}, DtypeError, "expected a number, got True"),
+        ([1.0], {}, DtypeError, r"expected a number, got \[1.0\]"),
+        (np.nan, {}, RangeError, "^f: n: expected a finite number, got nan$"),
+        (10**400, {"low": 0}, RangeError, "expected a finite number of at least 0, got 1000"),
+        (0, {"above": 0}, RangeError, "expected a finite number above 0, got 0"),
+        (1.0, {"low": 0, "below": 1}, RangeError, r"in \[0, 1\), got 1.0"),
+        (np.float32(2), {"high": 1}, RangeError, "of at most 1"),
+    ],
+)
+def test_numbers(value: Any, bounds: Any, error: type[Exception], text: str) -> None:
+    with pytest.raises(error, match=text):
+        Arguments("f").number("n", value, **bounds)
+    assert Arguments("f").number("n", np.float32(0.5), above=0, high=0.5) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("value", "bounds", "error", "text"),
+    [
+        (3.0, {}, DtypeError, "^f: n: expected a whole number, got 3.0$"),
+        (False, {}, DtypeError, "expected a whole number, got False"),
+        (0, {"low": 1}, RangeError, "expected a whole number of at least 1, got 0"),
+        (-1, {"low": 0, "high": 2**64 - 1}, RangeError, r"in \[0, 2\^64 - 1\], got -1"),
+    ],
+)
+def test_whole_numbers(value: Any, bounds: Any, error: type[Exception], text: str) -> None:
+    with pytest.raises(error, match=text):
+        Arguments("f").integer("n", value, **bounds)
+    assert type(Arguments("f").integer("n", np.int8(3), low=3, high=3)) is int
+
+
+def test_masks_are_arrays_of_bool() -> None:
+    mask = Arguments("f").array("mask", [[True, False]], ("N", 2), dtype=np.bool_)
+    assert mask.dtype == np.bool_
+    with pytest.raises(DtypeError, match="mask: expected an array of bool, got an array of int64"):
+        Arguments("f").array("mask", [0, 1], ("N",), dtype=np.bool_)
+    with pytest.raises(ShapeError, match=r"mask: expected shape \(N, 2\), got \(2,\)"):
+        Arguments("f").array("mask", [True, False], ("N", 2), dtype=np.bool_)

@@ -97,7 +97,7 @@ NERFSTUDIO: list[tuple[Callable[[Any], None], type[Error], str]] = [
     (top(camera_model="EQUIRECTANGULAR"), IoError, "got EQUIRECTANGULAR"),
     (top(camera_model="OPENCV_FISHEYE", p1=0.01), SceneError, "p1: expected 0, got 0.01"),
     (top(k3=0.01), SceneError, "k3: expected 0, got 0.01"),
-    (top(k1=1e300), RangeError, "k1: expected a finite coefficient"),
+    (top(k1=1e300), RangeError, "k1: expected a finite number"),
     (top(fl_x=-5.0), RangeError, "fl_x: expected a positive focal length"),
     (top(w=24.5), RangeError, "w: expected a positive whole number"),
     (top(w=0), RangeError, "w: expected a positive whole number"),

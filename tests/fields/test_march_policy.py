@@ -16,14 +16,18 @@ BOX = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
 SHORTEST = math.sqrt(12) / MOST_SAMPLES
 
 
-@pytest.mark.parametrize(
-    "dt", [1e-12, 1e-300, 1e-9, 0.999 * SHORTEST, 0.0, -1.0, math.inf, math.nan]
-)
+@pytest.mark.parametrize("dt", [1e-12, 1e-300, 1e-9, 0.999 * SHORTEST, 0.0, -1.0])
 def test_a_step_that_takes_too_many_samples_is_refused(dt: float) -> None:
     with pytest.raises(RangeError) as caught:
         MarchPolicy(BOX, dt)
     expected = "MarchPolicy: dt: expected 1.32e-05 m or more, 262,144 samples across the box, got"
     assert str(caught.value).startswith(expected)
+
+
+@pytest.mark.parametrize("dt", [math.inf, math.nan])
+def test_a_step_that_is_not_finite_is_refused(dt: float) -> None:
+    with pytest.raises(RangeError, match="MarchPolicy: dt: expected a finite number"):
+        MarchPolicy(BOX, dt)
 
 
 def test_the_shortest_step_gives_as_many_samples() -> None:
@@ -62,7 +66,7 @@ def test_a_policy_is_refused_when_it_is_made(
 
 @pytest.mark.parametrize("stop", [-1.0, -1e-9, 1.0, math.inf, math.nan])
 def test_a_stop_is_a_transmittance(stop: float) -> None:
-    with pytest.raises(RangeError, match="RenderOptions: stop: expected a transmittance"):
+    with pytest.raises(RangeError, match="RenderOptions: stop: expected a finite number in"):
         RenderOptions(stop=stop)
 
 
@@ -79,5 +83,5 @@ def test_a_grid_says_how_much_memory_it_needs(resolution: int) -> None:
     for grid in (DenseGrid.empty(box, 4), SparseSh.full(box, 4)):
         with pytest.raises(RangeError, match=r"refined: resolution: expected room for 1000000"):
             grid.refined(resolution)
-        with pytest.raises(RangeError, match=r"refined: resolution: expected at least 2, got 1"):
+        with pytest.raises(RangeError, match="refined: resolution: expected a whole number"):
             grid.refined(1)

@@ -124,7 +124,7 @@ def test_wrong_arrays_are_refused() -> None:
         Points(position[:0], color[:0], log_radius[:0])
     with pytest.raises(DtypeError, match="expected float64 as position, got float32"):
         Points(position, color, log_radius.astype(np.float32))
-    with pytest.raises(RangeError, match="Points: opacity: expected between 0 and 1"):
+    with pytest.raises(RangeError, match="Points: opacity: expected a finite number in"):
         Points(position, color, log_radius, opacity=1.0)
     with pytest.raises(RangeError, match="alpha_min"):
         Points(position, color, log_radius, alpha_min=-1.0)

@@ -153,11 +153,11 @@ def test_bad_values_are_refused(
 
 
 def test_bad_options_are_refused() -> None:
-    with pytest.raises(RangeError, match="degree: expected 0 to 3, got 4"):
+    with pytest.raises(RangeError, match="degree: expected a whole number in"):
         SparseSh.full(BOX, 8, degree=4)
     with pytest.raises(RangeError, match=r"policy.border: expected 'zero', got 'clamp'"):
         SparseSh(FIELD.active, *FIELD.params.values(), replace(FIELD.policy, border="clamp"))
-    with pytest.raises(ShapeError, match="mask"):
+    with pytest.raises(DtypeError, match="mask"):
         ActiveVoxels(np.ones((4, 4, 4)))
     field = SparseSh.example(seed=1)
     field.params["density"][7] = np.nan

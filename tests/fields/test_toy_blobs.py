@@ -198,7 +198,7 @@ ONE = {"mean": np.zeros((2, 2)), "log_radius": np.zeros(2), "color": np.zeros((2
             "color: expected float64 as mean, got float32",
         ),
         ({name: array[:0] for name, array in ONE.items()}, ShapeError, "with N >= 1"),
-        ({"reach": 0.0}, RangeError, "reach: expected a positive number or None, got 0.0"),
+        ({"reach": 0.0}, RangeError, "reach: expected a finite number above 0, got 0.0"),
     ],
 )
 def test_bad_blobs_are_refused(change: dict[str, Any], error: type[Exception], words: str) -> None:

@@ -153,7 +153,7 @@ WRONG: dict[str, tuple[Callable[[Arrays], Any], str]] = {
         lambda a: a["meta"]["options"].update(refine_at=[0.2]),
         r"refine_at: expected 2 values, got \[0\.2\]",
     ),
-    "no steps": (lambda a: a["meta"]["options"].update(steps=0), "steps: expected a positive"),
+    "no steps": (lambda a: a["meta"]["options"].update(steps=0), "steps: expected a whole number"),
     "part of a degree": (
         lambda a: a["meta"]["options"].update(degree=1.5),
         "degree: expected a whole number, got 1.5",

@@ -64,11 +64,11 @@ def test_a_box_that_no_camera_sees_is_refused_whatever_is_allowed() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"steps": 0}, "FitOptions: steps: expected a positive number, got 0"),
-        ({"learning_rate": float("nan")}, "learning_rate: expected a positive number, got nan"),
-        ({"degree": 4}, "FitOptions: degree: expected 0 to 3, got 4"),
-        ({"prune": -0.1}, "FitOptions: prune: expected zero or more, got -0.1"),
-        ({"total_variation": -1.0}, "total_variation: expected zero or more, got -1.0"),
+        ({"steps": 0}, "FitOptions: steps: expected a whole number in .*, got 0"),
+        ({"learning_rate": float("nan")}, "rate: expected a finite number above 0, got nan"),
+        ({"degree": 4}, "FitOptions: degree: expected a whole number in .*, got 4"),
+        ({"prune": -0.1}, "FitOptions: prune: expected a finite number of at least 0, got -0.1"),
+        ({"total_variation": -1.0}, "total_variation: expected a finite number of at least 0"),
         ({"background": "gray"}, r"background: expected one of .*, got 'gray'"),
         ({"refine_at": (0.5, 0.2)}, "refine_at: expected two rising fractions below 1"),
     ],

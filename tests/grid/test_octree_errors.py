@@ -15,15 +15,15 @@ POINTS = np.zeros((5, 3))
 NAN = np.full((4, 4, 4, 2), np.nan, np.float32)
 
 CASES: list[tuple[Callable[[], object], type[Error], str]] = [
-    (lambda: Octree.from_dense(CELLS[0]), ShapeError, "values: expected 4 axes"),
-    (lambda: Quadtree.from_dense(CELLS), ShapeError, "values: expected 3 axes"),
-    (lambda: Octree.from_dense(CELLS.astype(int)), DtypeError, "values: expected bool, float32"),
-    (lambda: Octree.from_dense(NAN), RangeError, "got 128 that are not, the first at"),
+    (lambda: Octree.from_dense(CELLS[0]), ShapeError, "values: expected shape (X, Y, Z, C)"),
+    (lambda: Quadtree.from_dense(CELLS), ShapeError, "values: expected shape (X, Y, C)"),
+    (lambda: Octree.from_dense(CELLS.astype(int)), DtypeError, "values: expected float32"),
+    (lambda: Octree.from_dense(NAN), RangeError, "finite numbers, got nan at"),
     (lambda: Octree.from_dense(np.zeros((4, 0, 4, 1))), ShapeError, "at least one cell"),
     (lambda: Octree.from_dense(np.zeros((2, 2, 2, 5))), RangeError, "1 to 4 channels, got 5"),
     (lambda: Octree.from_dense(CELLS, tolerance=-1.0), RangeError, "tolerance: expected a finite"),
     (lambda: Octree.from_dense(CELLS, tolerance=np.nan), RangeError, "tolerance"),
-    (lambda: Octree.from_dense(CELLS > 0, tolerance=0.1), RangeError, "channels"),
+    (lambda: Octree.from_dense(CELLS > 0), ShapeError, "shape (X, Y, Z, 1)"),
     (lambda: Octree.from_dense(CELLS[..., :1] > 0, tolerance=0.1), RangeError, "tolerance"),
     (lambda: Octree.from_dense(CELLS, background=(1, 2, 3)), ShapeError, "background"),
     (lambda: Octree.from_dense(CELLS, background=np.inf), RangeError, "background"),
@@ -46,7 +46,7 @@ CASES: list[tuple[Callable[[], object], type[Error], str]] = [
     (lambda: TREE.traverse(POINTS, (POINTS + 1).astype("f4")), DtypeError, "directions"),
     (lambda: TREE.traverse(POINTS, POINTS + 1, t_min=np.nan), RangeError, "t_min"),
     (lambda: TREE.traverse(POINTS, POINTS + 1, t_max=np.ones(4)), ShapeError, "t_max"),
-    (lambda: TREE.expand(np.zeros((7, 1))), ShapeError, "a row a leaf"),
+    (lambda: TREE.expand(np.zeros((7, 1))), ShapeError, "values: expected shape (1, C)"),
     (lambda: TREE.expand_backward(np.zeros((4, 4, 5, 2))), ShapeError, "d_dense"),
 ]
 

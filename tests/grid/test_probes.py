@@ -167,7 +167,7 @@ def test_bad_input_is_refused() -> None:
         ProbeGrid(c[0], BOX)
     with pytest.raises(DtypeError, match="float32"):
         ProbeGrid(c.astype(int), BOX)
-    with pytest.raises(RangeError, match="lowest corner"):
+    with pytest.raises(RangeError, match="lower below upper"):
         ProbeGrid(c, BOX[::-1])
     with pytest.raises(RangeError, match="1, 4, 9"):
         ProbeGrid(c[:, :, :, :8], BOX)

@@ -103,7 +103,7 @@ def test_dilation_is_that_of_a_cube(steps: int) -> None:
 def test_a_dilation_beyond_time_or_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     grid = SparseGrid.from_dense(np.ones((1, 1, 1), np.float32))
     for steps in (0, 201, 1000):
-        with pytest.raises(RangeError, match=f"steps: expected 1 to 200, got {steps}"):
+        with pytest.raises(RangeError, match=f"steps: expected .*, got {steps}"):
             grid.dilate(steps)
     monkeypatch.setattr("photograd._memory.available_memory", lambda: 40_000_000)
     with pytest.raises(RangeError, match=r"steps: expected room for up to 64,481,201 voxels"):
@@ -163,10 +163,10 @@ def bad_nan() -> Array:
         (np.zeros((3, 3, 3, 2), np.float32), {}, ShapeError, r"got \(3, 3, 3, 2\)"),
         (np.zeros((3, 3, 3), bool), {}, DtypeError, "expected numbers, got an array of bool"),
         (bad_nan(), {}, RangeError, r"values: expected finite numbers, got nan at \["),
-        (spotted(), {"background": np.nan}, Error, "background: expected finite"),
-        (spotted(), {"tolerance": -1.0}, RangeError, "0 or more, got -1.0"),
-        (spotted(), {"tolerance": np.nan}, RangeError, "0 or more, got nan"),
-        (spotted(), {"origin": (2**31, 0, 0)}, RangeError, r"numbers in \[-1.07374e\+09"),
+        (spotted(), {"background": np.nan}, Error, "background: expected a finite"),
+        (spotted(), {"tolerance": -1.0}, RangeError, "at least 0, got -1.0"),
+        (spotted(), {"tolerance": np.nan}, RangeError, "at least 0, got nan"),
+        (spotted(), {"origin": (2**31, 0, 0)}, RangeError, r"numbers in \[-2\^30, 2\^30\]"),
         (spotted(), {"origin": (0.5, 0, 0)}, DtypeError, "integers, got float64"),
         (spotted(), {"world_from_index": np.zeros((4, 4))}, RangeError, "affine"),
         (spotted(), {"world_from_index": np.diag([1.0, 1, 0, 1])}, RangeError, "singular"),

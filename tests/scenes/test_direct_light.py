@@ -197,7 +197,7 @@ def direct_light() -> list[Any]:
 
 
 def test_bad_arguments_are_named() -> None:
-    with pytest.raises(RangeError, match="spp: expected at least 1"):
+    with pytest.raises(RangeError, match="spp: expected a whole number of at least 1"):
         lively().render_view(camera(), 0, 0)
     with pytest.raises(ShapeError, match=r"colors: expected shape \(V, 3\)"):
         vertex_color_texture(np.zeros((1, 3), np.uint32), np.ones(3, np.float32))

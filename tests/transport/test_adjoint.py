@@ -19,7 +19,7 @@ from tests.transport.scenes import BLACK, GRAY, any_material, picture_and_gradie
 
 SPP = 4
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
-# Of the few paths of these tests, independent ones happen to leave the black lamp, too.
+# Of the few paths of these tests, independent ones happen to leave the black light, too.
 INDEPENDENT = PathOptions(max_depth=5, roulette_from=2, sampler="independent")
 
 
@@ -73,7 +73,7 @@ def test_black_surfaces_have_derivatives() -> None:
     gradient = backward(start, np.ones((6, 6, 3)))
     assert (gradient["materials.ball.albedo"] > 0).all()
     assert (gradient["materials.floor.albedo"] > 0).all()
-    nowhere = ("materials.black.albedo", "emission.lamp")  # the lamp is not in the picture
+    nowhere = ("materials.black.albedo", "emission.lamp")  # the light is not in the picture
     report = check_gradient(
         function, backward, start, seed=5, coordinates=3, directions=3, may_be_zero=nowhere
     )
@@ -140,7 +140,7 @@ def test_float_agrees_with_double(scene: Any) -> None:
     g, h = (t.render_backward(d, spp=8, seed=1) for t in tracers)
     for name in g:
         assert np.linalg.norm(h[name]) > 0
-        # Measured: 6e-5 of the lamp's albedo, 4e-5 of the index of glass, 4e-6 of all others.
+        # Measured: 6e-5 of the light's albedo, 4e-5 of the index of glass, 4e-6 of all others.
         assert np.linalg.norm(g[name] - h[name]) <= 1e-4 * np.linalg.norm(h[name]), name
 
 
@@ -148,7 +148,7 @@ def test_bad_arguments_are_named() -> None:
     tracer = PathTracer(cornell_box(4))
     with pytest.raises(ShapeError, match="d_image: expected shape"):
         tracer.render_backward(np.zeros((3, 4, 3)), spp=1, seed=0)
-    with pytest.raises(RangeError, match="spp: expected an integer at least 1"):
+    with pytest.raises(RangeError, match="spp: expected a whole number of at least 1"):
         tracer.render(spp=0, seed=0)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         tracer.add_samples(Accumulation.empty(3, 4), 1, seed=0)

@@ -58,7 +58,7 @@ def check(scene: Scene, options: PathOptions = OPTIONS, *, without: tuple[str, .
 
 @pytest.mark.parametrize("model", MODELS)
 def test_every_model_is_the_transpose_of_its_adjoint(model: str) -> None:
-    # The black lamp reflects nothing unless some path starts from it; the others must all count.
+    # The black light reflects nothing unless some path starts from it; the others must all count.
     check(stage(any_material(model), size=6, sky=0.4), without=("materials.black.albedo",))
 
 
@@ -180,7 +180,7 @@ def test_spelling_and_mistakes() -> None:
     ):
         with pytest.raises(RangeError, match="direction_of: parameter"):
             direction_of(params, spelling)
-    with pytest.raises(RangeError, match="spp: expected an integer at least 1"):
+    with pytest.raises(RangeError, match="spp: expected a whole number of at least 1"):
         derivative_image(tracer, "emission.lamp", spp=0, seed=0)
     bad: tuple[tuple[dict[str, Any], type[Exception]], ...] = (
         ({"emission.lamp": np.ones(2)}, ShapeError),

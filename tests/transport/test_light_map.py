@@ -61,7 +61,7 @@ def seen_irradiance(tracer: PathTracer, camera: Camera, albedo: Any, spp: int) -
 
 
 def covered(cover: Material, floor: Material = GRAY) -> Scene:
-    """A floor under a lamp, and a sheet between them whose inside is below."""
+    """A floor under a light, and a sheet between them whose inside is below."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         rectangle("cover", [-2, 0.9, 2], [4, 0, 0], [0, 0, -4], "cover"),
@@ -217,7 +217,7 @@ def test_parts_add_up_and_seeds_differ() -> None:
 
 def test_mistakes_are_named() -> None:
     tracer = PathTracer(stage(GRAY))
-    with pytest.raises(RangeError, match="particles: expected an integer at least 1"):
+    with pytest.raises(RangeError, match="particles: expected a whole number of at least 1"):
         trace_light(tracer, patch(2), 0, seed=0)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         trace_light(tracer, patch(2), 1, seed=0, sums=Accumulation.empty(3, 2))
@@ -229,7 +229,7 @@ def test_mistakes_are_named() -> None:
         IrradianceSensor([0, 0, 0], [1, 0, 0], [1, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="perpendicular"):
         IrradianceSensor([0, 0, 0], [0, 0, 0], [0, 1, 0], 1, 1)
-    with pytest.raises(RangeError, match="at least 1 cell"):
+    with pytest.raises(RangeError, match="height: expected a whole number of at least 1"):
         IrradianceSensor([0, 0, 0], [1, 0, 0], [0, 1, 0], 0, 1)
     with pytest.raises(RangeError, match="max_depth"):
         ParticleOptions(max_depth=0)

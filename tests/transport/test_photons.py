@@ -73,7 +73,7 @@ def test_a_caustic_keeps_its_power() -> None:
 def test_pictures_agree_with_path_tracing_but_for_the_blur() -> None:
     tracer = PathTracer(cornell_box(10))
     truth = tracer.render(spp=256, seed=1).mean
-    # Without the lamp, whose edges few samples draw well.
+    # Without the light, whose edges few samples draw well.
     seen = tracer.render(spp=256, seed=1, options=PathOptions(max_depth=1)).mean.max(axis=2) == 0
     assert seen.sum() == 96
     errors = []
@@ -130,7 +130,7 @@ def photon_picture() -> list[Any]:
 
 def test_mistakes_are_named() -> None:
     tracer = lit_floor()
-    with pytest.raises(RangeError, match="particles: expected at least 1"):
+    with pytest.raises(RangeError, match="particles: expected a whole number of at least 1"):
         PhotonMap(tracer, 0, radius=0.1, seed=1)
     for radius in (0.0, -1.0, np.inf, np.nan):
         with pytest.raises(RangeError, match="radius: expected above 0 m"):
@@ -138,7 +138,7 @@ def test_mistakes_are_named() -> None:
     photons = PhotonMap(tracer, 10, radius=0.1, seed=1)
     with pytest.raises(ShapeError, match="normals: expected shape"):
         photons.irradiance(np.zeros((2, 3)), np.zeros((1, 3)))
-    with pytest.raises(RangeError, match="spp: expected an integer at least 1"):
+    with pytest.raises(RangeError, match="spp: expected a whole number of at least 1"):
         photons.render(spp=0, seed=1)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         photons.add_samples(Accumulation.empty(3, 3), 1, seed=1)

@@ -10,7 +10,6 @@ from photograd_course.portable_math import matmul
 
 from photograd._arrays import Arguments
 from photograd.capture.frames import check_pose, invert_rigid
-from photograd.errors import DtypeError, RangeError, message
 from photograd.types import FloatArray
 
 
@@ -25,6 +24,7 @@ class Camera:
         world_from_camera: (4, 4) float64 rigid pose; camera axes +X right, +Y down, +Z forward.
 
     Raises:
+        DtypeError: a size that is no integer, or what is no number.
         RangeError: empty image, focal length not positive, or anything non-finite.
         SceneError, ShapeError: the pose is not rigid, or not (4, 4).
     """
@@ -38,20 +38,13 @@ class Camera:
     world_from_camera: FloatArray
 
     def __post_init__(self) -> None:
+        call = Arguments("Camera")
         for name in ("width", "height"):
-            size = getattr(self, name)
-            if not isinstance(size, int | np.integer) or isinstance(size, bool):
-                raise DtypeError(message("Camera", name, "an integer", type(size).__name__))
-            if not 0 < size < 1 << 20:
-                raise RangeError(message("Camera", name, "1 to 2^20 pixels", size))
+            call.integer(name, getattr(self, name), low=1, high=2**20 - 1)
         for name in ("fx", "fy"):
-            focal = getattr(self, name)
-            if not 1e-6 < focal < 1e9:
-                raise RangeError(message("Camera", name, "a positive focal length", focal))
+            call.number(name, getattr(self, name), above=1e-6, below=1e9)
         for name in ("cx", "cy"):
-            center = getattr(self, name)
-            if not abs(center) < 1e9:
-                raise RangeError(message("Camera", name, "a finite pixel position", center))
+            call.number(name, getattr(self, name), above=-1e9, below=1e9)
         pose = check_pose("Camera", "world_from_camera", self.world_from_camera).copy()
         pose.setflags(write=False)
         object.__setattr__(self, "world_from_camera", pose)
@@ -122,9 +115,8 @@ class Camera:
         Raises:
             RangeError: factor below 1 or larger than the image.
         """
-        if not 1 <= factor <= min(self.width, self.height):
-            expected = f"1 to {min(self.width, self.height)}"
-            raise RangeError(message("downscaled", "factor", expected, factor))
+        largest = min(self.width, self.height)
+        factor = Arguments("Camera.downscaled").integer("factor", factor, low=1, high=largest)
         return replace(
             self,
             width=self.width // factor,

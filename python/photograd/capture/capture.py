@@ -189,8 +189,7 @@ class Capture:
         Raises:
             RangeError: count below 1.
         """
-        if count < 1:
-            raise RangeError(message("subsample", "count", "at least 1", count))
+        count = Arguments("Capture.subsample").integer("count", count, low=1)
         line = f"at most {count} views of each split kept, evenly spaced"
         return replace(
             self,

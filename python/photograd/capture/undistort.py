@@ -211,9 +211,8 @@ class ColmapLens:
     parameters: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        if not all(abs(value) < 1e9 for value in self.parameters):
-            got = list(self.parameters)
-            raise RangeError(message("ColmapLens", "parameters", "finite numbers", got))
+        call = Arguments("ColmapLens", np.float64)
+        call.array("parameters", self.parameters, ("P",), above=-1e9, below=1e9)
         self._camera()
 
     def _camera(self) -> Any:
@@ -248,9 +247,9 @@ def _points(function: str, points: FloatArray) -> FloatArray:
 
 
 def _check_coefficients(lens: Distortion | FisheyeDistortion) -> None:
+    call = Arguments(type(lens).__name__)
     for name, value in vars(lens).items():
-        if not abs(value) < MAX_COEFFICIENT:
-            raise RangeError(message(type(lens).__name__, name, "a finite coefficient", value))
+        call.number(name, value, above=-MAX_COEFFICIENT, below=MAX_COEFFICIENT)
 
 
 def _first_root(coefficients: list[float]) -> float:

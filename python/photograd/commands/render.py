@@ -19,12 +19,13 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd._checks import typed
 from photograd.capture.orbit import orbit_cameras
 from photograd.commands.drawable import check_rendered, is_volume
 from photograd.commands.shared import SizeOption, check_output_name, out_option, use_threads
 from photograd.errors import RangeError, message
 from photograd.fitting.evaluate import display_image
-from photograd.fitting.fog import RAMPS, load_fog
+from photograd.fitting.fog import RAMPS, Ramp, load_fog
 from photograd.fitting.model import Model, load_model
 from photograd.images.write import write_png
 from photograd.splats.files import holds_gaussians, read_gaussians
@@ -101,7 +102,8 @@ def render(
     if holds_gaussians(model):
         views = _splat_views(model, up, circle)
     elif is_volume(model):
-        fog = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
+        colors = typed("render", "--ramp", Ramp, ramp)
+        fog = load_fog(model, ramp=colors, sigma_t=sigma_t, resolution=resolution, window=window)
         views = _model_views(fog, circle)
     else:
         views = _model_views(load_model(model), circle)

@@ -11,9 +11,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._memory import available_memory
-from photograd.errors import Error, RangeError, ShapeError, message
+from photograd.errors import Error, RangeError, message
 from photograd.types import Array
 
 SIDE = 8
@@ -27,11 +28,11 @@ class ActiveVoxels:
     """
 
     def __init__(self, mask: Array) -> None:
-        """`mask` (X, Y, Z) bool. Raises Error where nothing is active, ShapeError for others."""
-        if mask.ndim != 3 or mask.dtype != np.bool_:
-            raise ShapeError(
-                message("ActiveVoxels", "mask", "(X, Y, Z) bool", f"{mask.shape} {mask.dtype}")
-            )
+        """`mask` (X, Y, Z) bool.
+
+        Raises Error where nothing is active, DtypeError or ShapeError for other arrays.
+        """
+        mask = Arguments("ActiveVoxels").array("mask", mask, ("X", "Y", "Z"), dtype=np.bool_)
         if not mask.any():
             raise Error(
                 message(
@@ -43,7 +44,8 @@ class ActiveVoxels:
                 )
             )
         self.mask = mask
-        self.shape: tuple[int, int, int] = mask.shape
+        x, y, z = mask.shape
+        self.shape = (x, y, z)
         blocks = _blocks(mask)
         full = blocks.any(axis=(3, 4, 5))
         self.origins: Array = np.ascontiguousarray(np.argwhere(full) * SIDE, np.int32)

@@ -13,11 +13,11 @@ from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
+from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
 from photograd._memory import require_room
-from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.fields.voxel_field import GridField
 from photograd.representation import (
@@ -55,10 +55,9 @@ def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, 
         resolution: voxels along the longest edge.
 
     Raises:
-        RangeError: fewer than 2 voxels along the longest edge.
+        DtypeError, RangeError: fewer than 2 voxels along the longest edge.
     """
-    if resolution < 2:
-        raise RangeError(message(function, "resolution", "at least 2", resolution))
+    Arguments(function).integer("resolution", resolution, low=2)
     extent = box[1] - box[0]
     voxel = extent.max() / resolution
     x, y, z = (max(round(edge), 2) for edge in (extent / voxel).tolist())
@@ -89,25 +88,16 @@ class DenseGrid(GridField):
     row_updates: ClassVar[bool] = False  # most rows have a gradient
 
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
-        """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite.
+        """Raises DtypeError, ShapeError or RangeError unless values is (X, Y, Z, 4), finite, and
+        X, Y and Z are at least 2.
 
         Args:
             values: raw color and density of each voxel.
             policy: the box, the step and the activations.
             fused: False takes the readable form of the kernel.
         """
-        if values.ndim != 4 or values.shape[3] != 4 or min(values.shape[:3]) < 2:
-            raise ShapeError(
-                message("DenseGrid", "values", "shape (X, Y, Z, 4), X Y Z >= 2", f"{values.shape}")
-            )
-        if values.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            raise DtypeError(
-                message("DenseGrid", "values", "float32 or float64", f"{values.dtype}")
-            )
-        if not np.isfinite(values).all():
-            count = int((~np.isfinite(values)).sum())
-            raise Error(message("DenseGrid", "values", "finite values", f"{count} that are not"))
-        self.params = {"values": np.ascontiguousarray(values)}
+        call = Arguments("DenseGrid")
+        self.params = {"values": call.array("values", values, ("X", "Y", "Z", 4), min_length=2)}
         self.policy = policy
         self.fused = fused
 
@@ -137,16 +127,9 @@ class DenseGrid(GridField):
             steps_per_voxel: of the march.
             dtype: np.float32 or np.float64.
         """
-        if resolution < 2:
-            raise RangeError(
-                message("DenseGrid.empty", "resolution", "at least 2", f"{resolution}")
-            )
-        box = np.asarray(box, np.float64)
+        call = Arguments("DenseGrid.empty", np.float64)
+        resolution, box = call.integer("resolution", resolution, low=2), call.box("box", box)
         extent = box[1] - box[0]
-        if not (np.isfinite(box).all() and (extent > 0).all()):
-            raise RangeError(
-                message("DenseGrid.empty", "box", "finite, lower corner below upper", f"{box}")
-            )
         voxel = extent.max() / resolution
         voxels = cubic_voxels(extent, resolution)
         _require_room("DenseGrid.empty", voxels, np.dtype(dtype).itemsize)

@@ -6,7 +6,6 @@ cpp/photograd/render/march/march.h (the loop).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,9 +14,9 @@ from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
-from photograd._checks import require_choices, require_finite
+from photograd._checks import require_bounds, require_choices, require_finite
 from photograd._compiled import _core
-from photograd.errors import DtypeError, Error, RangeError, message
+from photograd.errors import Error, RangeError, message
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd.types import Array
 
@@ -69,18 +68,11 @@ class MarchPolicy:
 
     def __post_init__(self) -> None:
         box = Arguments("MarchPolicy", np.float64).box("box", self.box)
-        extent = box[1] - box[0]
-        for name in ("dt", "density_scale"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-                raise DtypeError(message("MarchPolicy", name, "a number", repr(value)))
-        shortest = norm(extent) / MOST_SAMPLES
-        if not shortest <= self.dt < math.inf:
+        require_bounds(self, "density_scale", "dt")
+        shortest = norm(box[1] - box[0]) / MOST_SAMPLES
+        if self.dt < shortest:
             expected = f"{shortest:.3g} m or more, {MOST_SAMPLES:,} samples across the box"
             raise RangeError(message("MarchPolicy", "dt", expected, self.dt))
-        if not math.isfinite(self.density_scale):
-            got = self.density_scale
-            raise RangeError(message("MarchPolicy", "density_scale", "a finite number", got))
         require_choices(self)
 
     def settings(self, stop: float) -> Any:

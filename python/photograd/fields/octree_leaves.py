@@ -7,7 +7,6 @@ and what that loses is what fine-tuning the leaves brings back.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from photograd_course.portable_math import exp, expm1, log, log1p, sigmoid, softplus
 
 from photograd import sh
+from photograd._checks import require_bounds
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.sparse_sh import SparseSh
@@ -37,9 +37,7 @@ class TreePolicy:
 
     def __post_init__(self) -> None:
         """Raises RangeError for a density scale that is not finite."""
-        if not math.isfinite(self.density_scale):
-            got = self.density_scale
-            raise RangeError(message("TreePolicy", "density_scale", "a finite number", got))
+        require_bounds(self, "density_scale")
 
 
 @dataclass(frozen=True)

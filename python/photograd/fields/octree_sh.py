@@ -36,7 +36,7 @@ from photograd._arrays import Arguments
 from photograd._checkpoint import Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_leaves import (
     Borders,
@@ -112,9 +112,8 @@ class OctreeSh(VoxelField):
             coefficients: (N, K, 3) of the harmonics.
             density_scale: extinction in 1/m of an activated density of 1.
         """
+        row = Arguments("OctreeSh").array("row", row, (len(tree.values),), dtype=np.int32, low=-1)
         rows = int((row >= 0).sum())
-        if row.shape != (len(tree.values),):
-            raise ShapeError(message("OctreeSh", "row", f"({len(tree.values)},)", row.shape))
         if not np.array_equal(np.sort(row[row >= 0]), np.arange(rows)):
             raise RangeError(message("OctreeSh", "row", "each of 0, 1, ... once, or -1", "others"))
         call = Arguments("OctreeSh")

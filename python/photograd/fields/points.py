@@ -24,7 +24,6 @@ from photograd_course.portable_math import log
 from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
-from photograd.errors import RangeError, message
 from photograd.representation import (
     Outputs,
     ParamSpec,
@@ -88,8 +87,7 @@ class Points(Representation):
             "color": call.array("color", color, ("N", 3), finite=False),
             "log_radius": call.array("log_radius", log_radius, ("N",), (1,), finite=False),
         }
-        if not 0 < opacity < 1:
-            raise RangeError(message("Points", "opacity", "between 0 and 1", f"{opacity}"))
+        call.number("opacity", opacity, above=0, below=1)
         RayOptions(alpha_min=alpha_min)  # checks it
         self.params = arrays
         self.opacity = opacity

@@ -122,8 +122,7 @@ class SparseSh(GridField):
         `resolution`, `finest`, `sigma_t`, `steps_per_voxel` and `dtype` as for `DenseGrid.empty`;
         `degree` 0 to 3. Raises RangeError.
         """
-        if degree not in range(MAX_DEGREE + 1):
-            raise RangeError(message("SparseSh.full", "degree", f"0 to {MAX_DEGREE}", degree))
+        Arguments("SparseSh.full").integer("degree", degree, low=0, high=MAX_DEGREE)
         corners = np.asarray(box, np.float64)
         if resolution >= 2 and np.ptp(corners, axis=0).max() > 0:  # else refused below
             shape = cubic_voxels(corners[1] - corners[0], resolution)

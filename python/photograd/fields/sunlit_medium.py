@@ -34,7 +34,7 @@ from photograd_course.portable_math import norm
 
 from photograd._arrays import Arguments
 from photograd.bsdf.phase import registry as phase_functions
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.geometry.mesh import Bvh
 from photograd.representation import (
@@ -78,8 +78,7 @@ def sun_visibility(
     Raises:
         RangeError: samples below 1.
     """
-    if samples < 1:
-        raise RangeError(message("sun_visibility", "samples", "at least 1", samples))
+    Arguments("sun_visibility").integer("samples", samples, low=1)
     fine = tuple(int(n) * samples for n in shape)
     origins = voxel_centers(box, fine).reshape(-1, 3)
     towards = np.ascontiguousarray(np.broadcast_to(np.asarray(sun, np.float64), origins.shape))
@@ -144,16 +143,14 @@ class SunlitMedium(Representation):
 
         Raises:
             ShapeError, DtypeError: parameters of other shapes or types.
-            RangeError: an unknown phase function, a box, step or direction that is none.
+            RangeError: an unknown phase function; a box, step or direction without extent.
         """
         self.params = _checked(params)
-        corners, towards = np.asarray(box, np.float64), np.asarray(sun, np.float64)
+        call = Arguments("SunlitMedium", np.float64)
+        corners, towards = call.box("box", box), call.array("sun", sun, (3,))
         length = norm(towards)
-        if corners.shape != (2, 3) or not (corners[1] > corners[0]).all() or not dt > 0:
-            got = f"{corners.tolist()}, dt {dt}"
-            raise RangeError(message("SunlitMedium", "box, dt", "a box and a step", got))
-        if towards.shape != (3,) or not 0 < length < np.inf:
-            raise RangeError(message("SunlitMedium", "sun", "a direction (3,)", towards.tolist()))
+        if not 0 < length < np.inf:
+            raise RangeError(message("SunlitMedium", "sun", "a direction", towards.tolist()))
         self.sun = towards / length
         self.phase = phase_functions()[phase]
         self.solids = solids
@@ -168,10 +165,7 @@ class SunlitMedium(Representation):
             visibility = sun_visibility(solids, corners, shape, self.sun)
         if visibility is None:
             visibility = np.ones(shape)
-        if visibility.shape != shape:
-            got = f"shape {visibility.shape}"
-            raise ShapeError(message("SunlitMedium", "visibility", f"shape {shape}", got))
-        self.visibility = visibility
+        self.visibility = call.array("visibility", visibility, shape, finite=False)
 
     @classmethod
     def homogeneous(

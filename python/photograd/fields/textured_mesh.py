@@ -25,7 +25,7 @@ from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
-from photograd._checks import from_plain
+from photograd._checks import from_plain, require_bounds
 from photograd._fit_options import FitOptions
 from photograd._gltf_bytes import GltfBytes
 from photograd.errors import RangeError, message
@@ -71,9 +71,7 @@ class MeshPolicy:
     pixel_angle: float = 0.0
 
     def __post_init__(self) -> None:
-        if not 0 <= self.pixel_angle < np.inf:
-            got = self.pixel_angle
-            raise RangeError(message("MeshPolicy", "pixel_angle", "an angle of 0 or more", got))
+        require_bounds(self, "pixel_angle", low=0)
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from photograd_course.random import uniform
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.representation import (
     Outputs,
@@ -36,22 +36,15 @@ class TinyNetwork(Representation):
     teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(self, weights: Array, policy: MarchPolicy) -> None:
-        """Raises ShapeError unless weights is a flat array of the network's size.
+        """Raises DtypeError or ShapeError unless weights is a flat array of the network's size.
 
         Args:
             weights: of all layers, flat.
             policy: box, step and activations.
         """
-        if weights.shape != (_core.tiny_network_parameters,):
-            raise ShapeError(
-                message(
-                    "TinyNetwork",
-                    "weights",
-                    f"shape ({_core.tiny_network_parameters},)",
-                    f"{weights.shape}",
-                )
-            )
-        self.params = {"weights": np.ascontiguousarray(weights)}
+        shape = (_core.tiny_network_parameters,)
+        weights = Arguments("TinyNetwork").array("weights", weights, shape, finite=False)
+        self.params = {"weights": weights}
         self.policy = policy
 
     @classmethod

@@ -90,8 +90,8 @@ class ToyBlobs(Representation):
             "log_radius": call.array("log_radius", log_radius, ("N",), finite=False),
             "color": call.array("color", color, ("N", 3), finite=False),
         }
-        if reach is not None and not reach > 0:
-            raise RangeError(message("ToyBlobs", "reach", "a positive number or None", f"{reach}"))
+        if reach is not None:
+            call.number("reach", reach, above=0)
         self.params = arrays
         self.reach = reach
         self.faint = faint

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal, get_args
 
 import numpy as np
 from photograd_course.color import srgb_decode
 
+from photograd._checks import typed
 from photograd._fit_options import FitOptions
 from photograd._memory import require_room
 from photograd.errors import RangeError, message
@@ -18,7 +20,8 @@ from photograd.grids.vdb import read_vdb
 from photograd.grids.volumes import SUFFIXES, read_volume
 from photograd.types import Array
 
-RAMPS = ("white", "inferno", "viridis", "bone")
+Ramp = Literal["white", "inferno", "viridis", "bone"]
+RAMPS: tuple[Ramp, ...] = get_args(Ramp)
 GRAY = 0.8
 THICK = 12.0
 """Optical depth of the longest edge of the box, filled with the highest density, by default."""
@@ -27,7 +30,7 @@ THICK = 12.0
 def load_fog(
     path: Path,
     *,
-    ramp: str,
+    ramp: Ramp,
     sigma_t: float | None,
     resolution: int,
     window: tuple[float, float] | None = None,
@@ -57,7 +60,7 @@ def load_fog(
 def fog_model(
     grid: SparseGrid,
     *,
-    ramp: str = "white",
+    ramp: Ramp = "white",
     sigma_t: float | None = None,
     resolution: int = 128,
     window: tuple[float, float] | None = None,
@@ -77,8 +80,7 @@ def fog_model(
         RangeError: another ramp, a grid without positive values, an empty window, a field beyond
             memory.
     """
-    if ramp not in RAMPS:
-        raise RangeError(message("render", "ramp", f"one of {', '.join(RAMPS)}", repr(ramp)))
+    typed("render", "ramp", Ramp, ramp)
     lo, hi = (0.0, np.inf) if window is None else window
     if not lo < hi:
         raise RangeError(message("render", "window", "two values, the lower first", window))
@@ -121,7 +123,7 @@ def _box_and_shape(grid: SparseGrid, resolution: int) -> tuple[Array, tuple[int,
     return np.stack([center - half, center + half]), (x, y, z)
 
 
-def _colors(share: Array, ramp: str) -> Array:
+def _colors(share: Array, ramp: Ramp) -> Array:
     """Linear colors (X, Y, Z, 3) of values in 0..1."""
     if ramp == "white":
         return np.full((*share.shape, 3), GRAY)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 Classify = Callable[[tuple[int, ...], int], Sequence[float] | None]
@@ -91,28 +91,21 @@ class _SpatialTree:
                 by more than this in it. 0 keeps every cell as it is.
 
         Raises:
-            DtypeError, ShapeError: other types or shapes.
-            RangeError: no cell, too many cells or channels, values that are not finite (counted), a
-                negative tolerance, or one for occupancy.
+            DtypeError, ShapeError: other types or shapes; occupancy of more than one channel.
+            RangeError: no cell, too many cells or channels, values that are not finite, a negative
+                tolerance, or one for occupancy.
         """
         name = f"{cls.__name__}.from_dense"
-        array = np.ascontiguousarray(values)
-        if array.dtype == np.bool_:
-            array = array.view(np.uint8)
-        elif array.dtype not in (np.float32, np.float64):
-            raise DtypeError(message(name, "values", "bool, float32 or float64", array.dtype))
-        _require_finite(name, "values", array)
-        if array.ndim != cls.dimensions + 1:
-            expected = f"{cls.dimensions + 1} axes, the last of them channels"
-            raise ShapeError(message(name, "values", expected, f"shape {array.shape}"))
-        if array.dtype == np.uint8 and array.shape[-1] != 1:
-            got = f"{array.shape[-1]} channels"
-            raise RangeError(message(name, "values", "one channel of occupancy", got))
+        call, axes = Arguments(name), ("X", "Y", "Z")[: cls.dimensions]
+        occupancy = np.asarray(values).dtype == np.bool_
+        if occupancy:
+            array = call.array("values", values, (*axes, 1), dtype=np.bool_).view(np.uint8)
+        else:
+            array = call.array("values", values, (*axes, "C"))
         behind = _spread(name, "background", background, array.shape[-1:], array.dtype)
-        _require_finite(name, "background", behind)
         core, leaves = cls.core_class.from_dense(array, behind, float(tolerance))
-        shape = tuple(int(n) for n in array.shape[:-1])
-        held = leaves.view(np.bool_) if array.dtype == np.uint8 else leaves
+        shape = array.shape[:-1]
+        held = leaves.view(np.bool_) if occupancy else leaves
         return cls(core, held, _box(name, bounds, shape), shape)
 
     @classmethod
@@ -196,9 +189,7 @@ class _SpatialTree:
             raise RangeError(message(name, "directions", "directions with a length", got))
         limits = []
         for argument, limit in (("t_min", t_min), ("t_max", t_max)):
-            limits.append(_spread(name, argument, limit, (len(o),), o.dtype))
-            if np.isnan(limits[-1]).any():
-                raise RangeError(message(name, argument, "numbers", "NaN"))
+            limits.append(_spread(name, argument, limit, (len(o),), o.dtype, low=-np.inf))
         return LeafVisits(*self._core.traverse(o, d, *limits))
 
     def leaf_boxes(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
@@ -217,10 +208,10 @@ class _SpatialTree:
         Raises:
             ShapeError: not one row a leaf.
         """
-        held = self.values if values is None else values
-        if held.ndim != 2 or len(held) != len(self.values):
-            expected = f"shape ({len(self.values)}, C), a row a leaf"
-            raise ShapeError(message("expand", "values", expected, f"shape {held.shape}"))
+        call, held = Arguments(f"{type(self).__name__}.expand"), self.values
+        if values is not None:
+            shape, dtype = (len(self.values), "C"), np.asarray(values).dtype
+            held = call.array("values", values, shape, dtype=dtype, finite=False)
         dense: Array = held[self._leaf_of_cell()]
         return dense
 
@@ -230,7 +221,7 @@ class _SpatialTree:
         Raises:
             ShapeError: not of the shape of the dense array.
         """
-        call = Arguments("expand_backward")
+        call = Arguments(f"{type(self).__name__}.expand_backward")
         d_dense = call.array("d_dense", d_dense, (*self.shape, "C"), finite=False)
         leaf, count = self._leaf_of_cell().ravel(), len(self.values)
         rows = d_dense.reshape(len(leaf), -1)
@@ -277,10 +268,9 @@ def tree_of_leaves(
         ShapeError: arrays of other shapes.
         RangeError: cubes that do not fill the root's.
     """
-    if side.ndim != 1 or lower.shape != (len(side), 3):
-        expected = f"({len(np.atleast_1d(side))}, 3), a row a leaf"
-        raise ShapeError(message("tree_of_leaves", "lower", expected, lower.shape))
-    cubes = np.column_stack([lower, side]).astype(np.int64)
+    call = Arguments("tree_of_leaves", np.int64)
+    side = call.array("side", side, ("L",))
+    cubes = np.column_stack([call.array("lower", lower, ("L", 3)), side])
     edge = int((cubes[:, :3] + cubes[:, 3:]).max(initial=1))
     depth = max(edge - 1, 0).bit_length()
     if not all(1 <= cells <= 1 << depth for cells in shape):
@@ -333,19 +323,15 @@ def _box(name: str, bounds: npt.ArrayLike | None, shape: tuple[int, ...]) -> Arr
 
 
 def _spread(
-    name: str, argument: str, value: npt.ArrayLike, shape: tuple[int, ...], dtype: Any
+    name: str,
+    argument: str,
+    value: npt.ArrayLike,
+    shape: tuple[int, ...],
+    dtype: Any,
+    *,
+    low: float | None = None,
 ) -> Array:
-    """One number for all, or one for each."""
-    array = np.asarray(value)
-    if array.shape not in ((), shape):
-        expected = f"one number or shape {shape}"
-        raise ShapeError(message(name, argument, expected, f"shape {array.shape}"))
+    """One number for all, or one for each: finite ones, or with `low` any but NaN."""
+    call = Arguments(name, np.float64)
+    array = call.array(argument, value, (), shape, finite=low is None, low=low)
     return np.array(np.broadcast_to(array, shape), dtype)
-
-
-def _require_finite(name: str, argument: str, array: Array) -> None:
-    bad = ~np.isfinite(array)
-    if bad.any():
-        first = tuple(int(i) for i in np.argwhere(bad)[0])
-        got = f"{int(bad.sum())} that are not, the first at {first}"
-        raise RangeError(message(name, argument, "finite numbers", got))

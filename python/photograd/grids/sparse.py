@@ -78,8 +78,7 @@ class SparseGrid:
         call = Arguments(where, np.float32)
         axes = ("X", "Y", "Z")
         values = call.array("values", values, axes, (*axes, 1), (*axes, 3))
-        if not tolerance >= 0:
-            raise RangeError(message(where, "tolerance", "0 or more", tolerance))
+        call.number("tolerance", tolerance, low=0)
         full = values.reshape((*values.shape[:3], -1))
         empty = call.array("background", background, (), (full.shape[3],))
         empty = np.broadcast_to(empty, full.shape[3:])
@@ -216,8 +215,7 @@ class SparseGrid:
 
     def prune(self, tolerance: float = 0.0) -> None:
         """Deactivate what differs from the background by at most `tolerance`; drop empty nodes."""
-        if not tolerance >= 0:
-            raise RangeError(message("SparseGrid.prune", "tolerance", "0 or more", tolerance))
+        Arguments("SparseGrid.prune").number("tolerance", tolerance, low=0)
         self.core.prune(tolerance)
 
     def dilate(self, steps: int = 1) -> None:
@@ -228,8 +226,7 @@ class SparseGrid:
         Raises:
             RangeError: steps outside of 1 to `MAX_STEPS`, or more voxels than memory may hold.
         """
-        if not 0 < steps <= MAX_STEPS:
-            raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MAX_STEPS}", steps))
+        Arguments("SparseGrid.dilate").integer("steps", steps, low=1, high=MAX_STEPS)
         found = self.statistics
         around = [
             found.active_voxels * (2 * steps + 1) ** 3,

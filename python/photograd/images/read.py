@@ -20,8 +20,9 @@ import numpy.typing as npt
 from photograd_course.input_files import read_file, require_file
 from PIL import Image
 
+from photograd._arrays import Arguments
 from photograd._extras import import_extra
-from photograd.errors import IoError, RangeError, message
+from photograd.errors import IoError, message
 from photograd.images import exr
 from photograd.images.kind import (
     LINEAR_KINDS,
@@ -235,9 +236,7 @@ def downscale_image(
         RangeError: factor below 1 or larger than the image.
     """
     height, width = image.shape[:2]
-    if not 1 <= factor <= min(height, width):
-        expected = f"1 to {min(height, width)}"
-        raise RangeError(message("downscale_image", "factor", expected, factor))
+    factor = Arguments("downscale_image").integer("factor", factor, low=1, high=min(height, width))
     mask = np.ones((height, width), dtype=np.bool_) if valid is None else valid
     if factor == 1:
         return image, mask

@@ -21,7 +21,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from photograd._arrays import Arguments
-from photograd.errors import RangeError, message
 from photograd.types import Array
 
 HEIGHTS, TURNS = 64, 48
@@ -34,10 +33,11 @@ def directional_albedo(roughness: ArrayLike, cosine: ArrayLike) -> Array:
     Raises:
         RangeError: a roughness or a cosine outside of (0, 1].
     """
-    numbers = np.broadcast_arrays(np.asarray(roughness, np.float64), np.asarray(cosine, np.float64))
-    for name, values in zip(("roughness", "cosine"), numbers, strict=True):
-        if not ((values > 0) & (values <= 1)).all():
-            raise RangeError(message("directional_albedo", name, "above 0, at most 1", values))
+    call = Arguments("directional_albedo", np.float64)
+    given = {"roughness": roughness, "cosine": cosine}
+    numbers = np.broadcast_arrays(
+        *(call.array(name, values, above=0, high=1) for name, values in given.items())
+    )
     rows = [_of_one_roughness(r, c) for r, c in zip(*(n.ravel() for n in numbers), strict=True)]
     return np.array(rows).reshape(*numbers[0].shape, 2)
 
@@ -117,7 +117,6 @@ def dfg_table(size: int = 64) -> DfgTable:
     Raises:
         RangeError: a size below 2.
     """
-    if size < 2:
-        raise RangeError(message("dfg_table", "size", "at least 2", size))
+    Arguments("dfg_table").integer("size", size, low=2)
     middles = (np.arange(size) + 0.5) / size
     return DfgTable(directional_albedo(middles[:, None], middles))

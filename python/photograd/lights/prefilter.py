@@ -67,8 +67,7 @@ def zonal_mean(
     if not isinstance(light, AROUND):
         expected, got = f"one of {', '.join(c.__name__ for c in AROUND)}", type(light).__name__
         raise RangeError(message("zonal_mean", "light", expected, got))
-    if not 2 <= rows <= MOST_ROWS:
-        raise RangeError(message("zonal_mean", "rows", f"2 to {MOST_ROWS}", rows))
+    Arguments("zonal_mean").integer("rows", rows, low=2, high=MOST_ROWS)
     turn = light.world_from_map if isinstance(light, EnvironmentMap) else np.eye(3)
     texels = light.texels.shape[0] if isinstance(light, EnvironmentMap) else LEAST_ROWS
     count = _source_rows(texels, width, rows)

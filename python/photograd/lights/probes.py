@@ -49,10 +49,7 @@ class ProbeGrid:
         call = Arguments("ProbeGrid")
         shape = ("X", "Y", "Z", "K", "C")
         coefficients = call.array("coefficients", coefficients, shape, finite=False, min_length=1)
-        corners = call.array("box", box, (2, 3), dtype=np.float64)
-        if not (corners[1] > corners[0]).all():
-            expected = "the lowest corner below the highest"
-            raise RangeError(message("ProbeGrid", "box", expected, corners.tolist()))
+        corners = Arguments("ProbeGrid", np.float64).box("box", box)
         self.degree = sh.degree_of(coefficients.shape[3])
         if coefficients.shape[4] not in (1, 3):
             got = f"{coefficients.shape[4]}"
@@ -202,9 +199,7 @@ def table_numbers(rows: int) -> int:
     Raises:
         RangeError: rows below 1.
     """
-    if rows < 1:
-        raise RangeError(message("table_numbers", "rows", "at least 1", rows))
-    return 2 * rows * rows
+    return 2 * Arguments("table_numbers").integer("rows", rows, low=1) ** 2
 
 
 def grid_bytes(
@@ -223,10 +218,11 @@ def grid_bytes(
         RangeError: anything below 1.
         ShapeError: not three axes.
     """
-    Arguments("grid_bytes").array("shape", shape, (3,), dtype=np.int64)
-    if min(*shape, numbers, channels, bytes_per_number) < 1:
-        got = (*shape, numbers, channels, bytes_per_number)
-        raise RangeError(message("grid_bytes", "sizes", "all at least 1", got))
+    call = Arguments("grid_bytes")
+    call.array("shape", shape, (3,), dtype=np.int64, low=1)
+    sizes = {"numbers": numbers, "channels": channels, "bytes_per_number": bytes_per_number}
+    for name, size in sizes.items():
+        call.integer(name, size, low=1)
     voxels = int(np.prod([int(n) for n in shape], dtype=object))
     return voxels * (1 + channels * numbers) * bytes_per_number
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from photograd._arrays import Arguments
 from photograd._checks import require_finite
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array
 
 
@@ -25,10 +25,12 @@ class RayBatch:
     pixel: NDArray[np.uint32]
 
     def __post_init__(self) -> None:
-        count = len(self.pixel)
-        for name, array in (("origins", self.origins), ("directions", self.directions)):
-            if array.shape != (count, 3):
-                raise ShapeError(message("RayBatch", name, f"shape ({count}, 3)", f"{array.shape}"))
+        call = Arguments("RayBatch")
+        pixel = call.array("pixel", self.pixel, ("R",), dtype=np.uint32)
+        object.__setattr__(self, "pixel", pixel)
+        for name in ("origins", "directions"):
+            rows = call.array(name, getattr(self, name), ("R", 3), finite=False)
+            object.__setattr__(self, name, rows)
 
 
 @dataclass(frozen=True)
@@ -38,10 +40,8 @@ class CanvasBatch:
     points: Array
 
     def __post_init__(self) -> None:
-        if self.points.ndim != 2 or self.points.shape[1] != 2:
-            raise ShapeError(
-                message("CanvasBatch", "points", "shape (N, 2)", f"{self.points.shape}")
-            )
+        points = Arguments("CanvasBatch").array("points", self.points, ("N", 2), finite=False)
+        object.__setattr__(self, "points", points)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +55,10 @@ class ImageBatch:
     camera_from_world: Array | None = None
 
     def __post_init__(self) -> None:
-        if self.camera_from_world is not None and self.camera_from_world.shape != (3, 4):
-            found = f"{self.camera_from_world.shape}"
-            raise ShapeError(message("ImageBatch", "camera_from_world", "shape (3, 4)", found))
+        if self.camera_from_world is not None:
+            call = Arguments("ImageBatch")
+            pose = call.array("camera_from_world", self.camera_from_world, (3, 4), finite=False)
+            object.__setattr__(self, "camera_from_world", pose)
 
 
 @dataclass(frozen=True)
@@ -71,9 +72,7 @@ class RenderOptions:
 
     def __post_init__(self) -> None:
         """Raises RangeError for a `stop` that is no transmittance below 1."""
-        if not 0 <= self.stop < 1:
-            expected = "a transmittance of at least 0 and below 1"
-            raise RangeError(message("RenderOptions", "stop", expected, self.stop))
+        Arguments("RenderOptions").number("stop", self.stop, low=0, below=1)
 
 
 @dataclass(frozen=True)

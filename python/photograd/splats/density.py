@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 from photograd_course.portable_math import log, log1p, matmul, sigmoid
 from photograd_course.row_map import RowMap
 
+from photograd._arrays import Arguments
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array
 
 
@@ -39,11 +40,10 @@ def rotation_matrices(quats: Array) -> Array:
     R = I + 2 w [v]x + 2 [v]x [v]x for a unit quaternion (w, v). [Shoemake1985]
 
     Raises:
-        ShapeError: `quats` is not (N, 4).
+        DtypeError, ShapeError: `quats` is not (N, 4) numbers.
     """
-    if quats.ndim != 2 or quats.shape[1] != 4:
-        raise ShapeError(message("rotation_matrices", "quats", "shape (N, 4)", f"{quats.shape}"))
-    q = quats.astype(np.float64)
+    call = Arguments("rotation_matrices", np.float64)
+    q = call.array("quats", quats, ("N", 4), finite=False)
     length = np.linalg.norm(q, axis=1, keepdims=True)
     w, x, y, z = (np.where(length > 0, q / np.where(length > 0, length, 1), [1, 0, 0, 0])).T
     zero = np.zeros_like(w)
@@ -69,13 +69,9 @@ class Grad2dStatistics:
 
     def checked(self, count: int) -> Grad2dStatistics:
         """Itself. Raises ShapeError or RangeError unless it belongs to `count` Gaussians."""
-        for name, array in (("total", self.total), ("count", self.count)):
-            if array.shape != (count,):
-                raise ShapeError(
-                    message("Grad2dStatistics", name, f"shape ({count},)", f"{array.shape}")
-                )
-            if array.size and array.min() < 0:
-                raise RangeError(message("Grad2dStatistics", name, "0 or more", array.min()))
+        call = Arguments("Grad2dStatistics", np.float64)
+        call.array("total", self.total, (count,), low=0)
+        call.array("count", self.count, (count,), dtype=np.int64, low=0)
         return self
 
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
@@ -119,10 +115,8 @@ class Schedule:
     every: int = 100
 
     def __post_init__(self) -> None:
-        for name, lowest in (("first", 0), ("last", 0), ("every", 1)):
-            if getattr(self, name) < lowest:
-                found = getattr(self, name)
-                raise RangeError(message("Schedule", name, f"{lowest} or more", f"{found}"))
+        require_bounds(self, "first", "last", low=0)
+        require_bounds(self, "every", low=1)
 
     def due(self, step: int) -> bool:
         """Whether something happens before this step."""

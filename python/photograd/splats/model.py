@@ -21,6 +21,7 @@ from photograd_course.random import normal_vectors
 from photograd_course.row_map import RowMap
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
@@ -113,12 +114,10 @@ class GaussianScene(Fittable):
             control: of the number of Gaussians; None leaves it.
             active_degree: highest degree of the harmonics that are drawn.
         """
-        if not 0 < extent < np.inf:
-            raise RangeError(message("GaussianScene", "extent", "a positive length", f"{extent}"))
+        call = Arguments("GaussianScene")
+        call.number("extent", extent, above=0)
         degree = gaussians.degree if active_degree is None else active_degree
-        if not 0 <= degree <= gaussians.degree:
-            expected = f"0 to {gaussians.degree}"
-            raise RangeError(message("GaussianScene", "active_degree", expected, f"{degree}"))
+        call.integer("active_degree", degree, low=0, high=gaussians.degree)
         self.params = _groups(gaussians)
         self.extent = extent
         self.policy = policy or SplatOptions()

@@ -25,9 +25,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd._arrays import Arguments
-from photograd._checks import require_finite
+from photograd._checks import require_bounds, require_finite
 from photograd._compiled import _core
-from photograd.errors import RangeError, message
 from photograd.splats.splatting import Gaussians, filled_cotangents
 from photograd.types import Array
 
@@ -56,16 +55,9 @@ class RayOptions:
     t_min: float = 0.01
 
     def __post_init__(self) -> None:
-        limits = {
-            "alpha_min": (0.0, 0.5),
-            "alpha_max": (0.5, 1.0),
-            "stop": (0.0, 0.5),
-            "t_min": (0.0, 1e6),
-        }
-        for name, (low, high) in limits.items():
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise RangeError(message("RayOptions", name, f"{low} to {high}", value))
+        require_bounds(self, "alpha_min", "stop", low=0, high=0.5)
+        require_bounds(self, "alpha_max", low=0.5, high=1)
+        require_bounds(self, "t_min", low=0, high=1e6)
 
     def smooth(self) -> RayOptions:
         """The same without cut-offs, but for `t_min`: for comparisons with finite differences."""

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from photograd import sh
 from photograd._arrays import Arguments
-from photograd._checks import require_choices, require_finite
+from photograd._checks import require_bounds, require_choices, require_finite
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
@@ -128,20 +128,11 @@ class SplatOptions:
     frustum_margin: float = 0.15
 
     def __post_init__(self) -> None:
-        limits = {
-            "low_pass": (0.0, 1e3),
-            "alpha_min": (0.0, 0.5),
-            "alpha_max": (0.5, 1.0),
-            "extent_sigmas": (0.0, 1e3),
-            "stop": (0.0, 0.5),
-            "near": (1e-6, 1e6),
-            "frustum_margin": (0.0, 1e3),
-        }
-        for name, (low, high) in limits.items():
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise RangeError(message("SplatOptions", name, f"{low} to {high}", value))
         require_choices(self)
+        require_bounds(self, "low_pass", "extent_sigmas", "frustum_margin", low=0, high=1e3)
+        require_bounds(self, "alpha_min", "stop", low=0, high=0.5)
+        require_bounds(self, "alpha_max", low=0.5, high=1)
+        require_bounds(self, "near", low=1e-6, high=1e6)
 
     def smooth(self) -> SplatOptions:
         """The same without cut-offs: every splat reaches every pixel, and no pixel ends early."""

@@ -13,12 +13,12 @@ from photograd_course.portable_math import log, norm, root
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._fit_options import FitOptions
 from photograd.capture.bounds import mean_coverage, silhouettes_of
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.view import View, display_color
-from photograd.errors import RangeError, message
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.density import DensityControl, NoControl, Schedule, logits
 from photograd.splats.markov_chain import MarkovChain
@@ -71,8 +71,7 @@ def start_gaussians(
     Raises:
         RangeError: `count` below 1, or a degree that splats do not have.
     """
-    if count < 1:
-        raise RangeError(message("start_gaussians", "count", "at least 1", count))
+    Arguments("start_gaussians").integer("count", count, low=1)
     if given is not None:
         points, colors = given
         size = neighbor_distance(points)

@@ -132,12 +132,10 @@ def recover(
     """
     uv = Arguments("recover").array("uv", uv, ("N", 2), finite=False)
     plan = TexturePlan(uv, colors, shape)
-    if steps < 1:
-        raise RangeError(message("recover", "steps", "at least 1", steps))
+    Arguments("recover").integer("steps", steps, low=1)
     if learning_rate is None:
         learning_rate = stable_learning_rate(uv, shape, plan.shape[2])
-    if not learning_rate > 0:
-        raise RangeError(message("recover", "learning_rate", "a positive number", learning_rate))
+    Arguments("recover").number("learning_rate", learning_rate, above=0)
     with run_folder("recover", folder, FILE_NAME, resume=resume):
         texture = np.full(plan.shape, start, uv.dtype)
         told = {"steps": steps, "learning_rate": learning_rate, "start": start}

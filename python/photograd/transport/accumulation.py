@@ -20,13 +20,13 @@ from typing import Any, Literal
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from photograd_course.atomic_io import atomic_write
-from photograd_course.checks import require_integer
 from photograd_course.color import srgb_encode
 
+from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._files import read_npz
 from photograd._notebook import png, smaller
-from photograd.errors import Error, IoError, RangeError, ShapeError, message
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.types import Array
 
 VERSION = 1
@@ -122,10 +122,9 @@ class Accumulation:
             DtypeError, RangeError: a count that is no whole number, or below 1.
             ShapeError: sums of another shape than (H, W).
         """
-        require_integer(function, many, count, least=1)
-        if self.radiance.shape != (*shape, 3):
-            expected = f"shape {(*shape, 3)}"
-            raise ShapeError(message(function, name, expected, self.radiance.shape))
+        call = Arguments(function, np.float64)
+        call.integer(many, count, low=1)
+        call.array(name, self.radiance, (*shape, 3), finite=False)
 
     def check_finite(self, function: str) -> None:
         """Raise Error that names the first pixel with a sum that is not finite.

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.checks import require_integer
 from photograd_course.suggest import choose_from
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.errors import SceneError, message
@@ -361,7 +361,7 @@ def builtin_scene(name: str, size: int = 256) -> Scene:
     if name not in BUILTIN:
         known = choose_from(name, BUILTIN)
         raise SceneError(message("builtin_scene", "name", "a built-in scene", name, known))
-    require_integer("builtin_scene", "size", size, least=1)
+    Arguments("builtin_scene").integer("size", size, low=1)
     return BUILTIN[name](size)
 
 

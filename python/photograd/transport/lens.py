@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
 from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
@@ -28,10 +29,8 @@ class Lens:
     focus: float
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.radius) and self.radius >= 0):
-            raise RangeError(message("Lens", "radius", "at least 0 m", self.radius))
-        if not (np.isfinite(self.focus) and self.focus > 0):
-            raise RangeError(message("Lens", "focus", "above 0 m", self.focus))
+        require_bounds(self, "radius", low=0)
+        require_bounds(self, "focus", above=0)
 
 
 PINHOLE = Lens(0.0, 1.0)

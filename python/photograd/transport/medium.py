@@ -53,9 +53,8 @@ class DensityGrid:
             raise RangeError(
                 message("DensityGrid", "world_from_box", "a box with a volume", "none")
             )
-        if self.majorant is not None and not 0 <= self.majorant < np.inf:
-            expected = "a finite number of at least 0"
-            raise RangeError(message("DensityGrid", "majorant", expected, self.majorant))
+        if self.majorant is not None:
+            Arguments("DensityGrid").number("majorant", self.majorant, low=0)
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "world_from_box", matrix)
         self.largest("DensityGrid", "values", values)
@@ -68,10 +67,7 @@ class DensityGrid:
             name: what it calls the values.
             values: (X, Y, Z).
         """
-        if not np.isfinite(values).all() or bool((values < 0).any()):
-            got = f"{float(np.min(values)):.6g}" if np.isfinite(values).all() else "others"
-            raise RangeError(message(function, name, "finite densities of at least 0", got))
-        most = float(values.max())
+        most = float(Arguments(function).array(name, values, low=0).max())
         if self.majorant is None:
             return most
         if most > self.majorant:
@@ -133,7 +129,7 @@ class Medium:
         """
         a, s = _color("sigma_a", sigma_a), _color("sigma_s", sigma_s)
         for name, value in (("sigma_a", a), ("sigma_s", s)):
-            _check("Medium.of", name, value, np.inf)
+            _check("Medium.of", name, value)
         total = a + s
         return cls(total, np.divide(s, total, out=np.zeros(3), where=total > 0), **more)
 
@@ -168,9 +164,9 @@ class Medium:
                 continue
             value = np.asarray(values[name])
             if name in ("sigma_t", "albedo"):
-                _check(function, prefix + name, value, 1.0 if name == "albedo" else np.inf)
-            elif not abs(float(value)) < 1:
-                raise RangeError(message(function, prefix + name, "between -1 and 1", float(value)))
+                _check(function, prefix + name, value, 1 if name == "albedo" else None)
+            else:
+                Arguments(function).number(prefix + name, float(value), above=-1, below=1)
             parts.append(np.reshape(value, -1))
         return np.concatenate(parts)
 
@@ -180,8 +176,5 @@ def _color(name: str, value: Any) -> Array:
     return np.array(np.broadcast_to(color, (3,)))
 
 
-def _check(function: str, name: str, value: Array, most: float) -> None:
-    if np.isfinite(value).all() and bool((value >= 0).all() and (value <= most).all()):
-        return
-    expected = "0 to 1" if most == 1 else "finite coefficients of at least 0 per meter"
-    raise RangeError(message(function, name, expected, value.tolist()))
+def _check(function: str, name: str, value: Array, most: float | None = None) -> None:
+    Arguments(function).array(name, value, low=0, high=most)

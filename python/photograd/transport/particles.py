@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._checks import require_bounds
 from photograd._compiled import _core
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
@@ -40,11 +41,8 @@ class ParticleOptions:
     roulette_from: int | None = 4
 
     def __post_init__(self) -> None:
-        if not 1 <= self.max_depth <= 4096:
-            raise RangeError(message("ParticleOptions", "max_depth", "1 to 4096", self.max_depth))
-        if self.roulette_from is not None and self.roulette_from < 0:
-            got = self.roulette_from
-            raise RangeError(message("ParticleOptions", "roulette_from", "at least 0", got))
+        require_bounds(self, "max_depth", low=1, high=4096)
+        require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int]:
         """As the core takes them.
@@ -91,9 +89,8 @@ class IrradianceSensor:
             expected = "perpendicular edges of some length"
             got = f"{self.edge_x} and {self.edge_y}"
             raise RangeError(message("IrradianceSensor", "edge_x, edge_y", expected, got))
-        if self.height < 1 or self.width < 1:
-            got = f"{self.height} by {self.width}"
-            raise RangeError(message("IrradianceSensor", "height, width", "at least 1 cell", got))
+        for name in ("height", "width"):
+            call.integer(name, getattr(self, name), low=1)
 
     @property
     def cell_area(self) -> float:
@@ -185,7 +182,7 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
         RangeError: count below 1, or a scene without lights.
         SceneError: as `trace_light`.
     """
-    _check_count("emit_particles", count)
+    Arguments("emit_particles").integer("count", count, low=1)
     return Emitted(
         *_core.emit_particles(
             **scene_arguments("emit_particles", tracer), seed=seed, first=first, count=count
@@ -207,11 +204,6 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments
-
-
-def _check_count(function: str, particles: int) -> None:
-    if particles < 1:
-        raise RangeError(message(function, "particles", "at least 1", particles))
 
 
 # Photon mapping: particles kept where they land, and pictures read off their density.
@@ -253,8 +245,7 @@ class PhotonMap:
                 without lights.
             SceneError: shapes that move.
         """
-        if particles < 1:
-            raise RangeError(message("PhotonMap", "particles", "at least 1", particles))
+        Arguments("PhotonMap").integer("particles", particles, low=1)
         self.tracer = tracer
         self.radius = radius
         self._map = _core.PhotonMap(

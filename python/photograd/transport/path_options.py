@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from photograd_course.checks import require_integer
-
-from photograd._checks import require_choices, require_instance
+from photograd._arrays import Arguments
+from photograd._checks import require_bounds, require_choices, require_instance
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, message
 
 Strategy = Literal["light", "bsdf", "mis"]
 Heuristic = Literal["balance", "power"]
@@ -51,11 +49,8 @@ class PathOptions:
 
     def __post_init__(self) -> None:
         require_choices(self)
-        if not 1 <= self.max_depth <= 4096:
-            raise RangeError(message("PathOptions", "max_depth", "1 to 4096", self.max_depth))
-        if self.roulette_from is not None and self.roulette_from < 0:
-            got = self.roulette_from
-            raise RangeError(message("PathOptions", "roulette_from", "at least 0", got))
+        require_bounds(self, "max_depth", low=1, high=4096)
+        require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int, int, int, int]:
         """As the core takes them.
@@ -66,7 +61,7 @@ class PathOptions:
         Raises:
             DtypeError, RangeError: no whole number, or none from 0 to 2^64 - 1.
         """
-        seed = require_integer("PathTracer", "seed", seed, least=0, most=(1 << 64) - 1)
+        seed = Arguments("PathTracer").integer("seed", seed, low=0, high=(1 << 64) - 1)
         late = NEVER if self.roulette_from is None else self.roulette_from
         strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
         sampler = SAMPLERS.index(self.sampler)

@@ -24,7 +24,7 @@ import numpy as np
 from photograd_course.color import srgb_decode
 
 from photograd._arrays import Arguments
-from photograd._checks import require_choices, typed
+from photograd._checks import require_bounds, require_choices, typed
 from photograd.errors import RangeError, message
 from photograd.images.read import read_header, read_image
 from photograd.textures import sample
@@ -137,8 +137,7 @@ class OcclusionMap:
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("OcclusionMap", self.values, (1,)))
         require_choices(self)
-        if not 0 <= self.strength <= 1:
-            raise RangeError(message("OcclusionMap", "strength", "0 to 1", self.strength))
+        require_bounds(self, "strength", low=0, high=1)
 
     def at(self, uv: Array) -> Array:
         """The factor (N,) of ambient light at texture coordinates (N, 2), bilinear, float32.

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.checks import require_integer
 from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
@@ -239,11 +238,10 @@ class PathTracer:
             ShapeError: d_image of another shape than the picture.
             RangeError: spp below 1, or another spread.
         """
-        name = "PathTracer.render_backward"
-        view = checked_view(name, self.scene.camera, camera, options)
-        call, shape = Arguments(name, np.float64), (view.height, view.width, 3)
-        d_image = call.array("d_image", d_image, shape, finite=False)
-        require_integer(name, "spp", spp, least=1)
+        call = Arguments("PathTracer.render_backward", np.float64)
+        view = checked_view(call.function, self.scene.camera, camera, options)
+        d_image = call.array("d_image", d_image, (view.height, view.width, 3), finite=False)
+        call.integer("spp", spp, low=1)
         return self.add_up(
             "render_backward",
             _core.trace_paths_backward,

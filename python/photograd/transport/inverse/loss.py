@@ -32,7 +32,7 @@ from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, pair_counts
 from photograd.transport.incomplete import WholeGradients, require_whole
 from photograd.transport.path_options import DEFAULTS, PathOptions
@@ -203,8 +203,7 @@ def loss_and_gradients(
     call = Arguments("loss_and_gradients", np.float64)
     target = call.array("target", target, shape, finite=False)
     weight = call.array("weight", weight, shape, finite=False)
-    if spp < 1:
-        raise RangeError(message("loss_and_gradients", "spp", "at least 1", spp))
+    call.integer("spp", spp, low=1)
     counts = None
     if spread != "uniform":
         pilot = tracer.render(

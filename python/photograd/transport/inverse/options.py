@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from photograd._checks import require_choices
-from photograd.errors import RangeError, message
+from photograd._checks import require_bounds, require_choices
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene
 from photograd.types import Array
@@ -51,19 +50,12 @@ class RecoveryOptions:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name, least in (("steps", 1), ("spp", 1), ("views", 0), ("resample_every", 1)):
-            if getattr(self, name) < least:
-                got = getattr(self, name)
-                raise RangeError(message("RecoveryOptions", name, f"at least {least}", got))
-        if not self.learning_rate > 0:
-            got = self.learning_rate
-            raise RangeError(message("RecoveryOptions", "learning_rate", "above 0", got))
-        if not 0 < self.final_rate <= 1:
-            got = self.final_rate
-            raise RangeError(message("RecoveryOptions", "final_rate", "above 0, at most 1", got))
         require_choices(self)
-        if not 0 <= self.seed < 2**64:
-            raise RangeError(message("RecoveryOptions", "seed", "0 to 2^64 - 1", self.seed))
+        require_bounds(self, "steps", "spp", "resample_every", low=1)
+        require_bounds(self, "views", low=0)
+        require_bounds(self, "learning_rate", above=0)
+        require_bounds(self, "final_rate", above=0, high=1)
+        require_bounds(self, "seed", low=0, high=2**64 - 1)
 
 
 # What is reported at the end.

@@ -154,8 +154,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         require_choices(self)
-        if not (math.isfinite(self.rate) and self.rate > 0):
-            raise RangeError(message("Parameter", f"{self.name}.rate", "above 0", self.rate))
+        Arguments("Parameter").number(f"{self.name}.rate", self.rate, above=0)
         if self.bounds is None:
             return
         lo, hi = self.bounds

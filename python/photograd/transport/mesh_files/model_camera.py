@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._checks import require_bounds
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
@@ -31,11 +31,8 @@ class ModelCamera:
     aspect: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0 < self.field_of_view < np.pi:
-            expected = "radians between 0 and pi"
-            raise RangeError(message("ModelCamera", "field_of_view", expected, self.field_of_view))
-        if self.aspect is not None and not 0 < self.aspect < np.inf:
-            raise RangeError(message("ModelCamera", "aspect", "a number above 0", self.aspect))
+        require_bounds(self, "field_of_view", above=0, below=np.pi)
+        require_bounds(self, "aspect", above=0)
 
     @classmethod
     def of(cls, camera: Camera, name: str = "camera") -> ModelCamera:
