@@ -264,7 +264,7 @@ def _parsed(words: Iterator[bytes], count: int, kind: str, row: int) -> list[Any
     for _ in range(count):
         word = next(words, None)
         if word is None or b"_" in word:
-            raise _DamagedError(f"{'an end' if word is None else word[:20]} in row {row}")
+            raise _DamagedError(f"{'no number' if word is None else repr(word[:20])} in row {row}")
         found.append(float(word) if kind[0] == "f" else int(word))
         if kind[0] != "f" and not np.iinfo(kind).min <= found[-1] <= np.iinfo(kind).max:
             raise _DamagedError(f"{word[:20]!r} for {np.dtype(kind).name} in row {row}")
