@@ -67,6 +67,23 @@ def sh_bound(points: int) -> dict[str, Any]:
     return _row(forward, slowest({"byte": 432 * points, "flop": 400 * points}))
 
 
+def hash_bound(points: int, levels: int, weights: int) -> dict[str, Any]:
+    """W7a: a point loads 8 rows a level, and adds to 8 of them backward; tables fit L3 one by one.
+
+    A weight of the layers takes 2 flop a point forward and 4 more backward.
+    """
+    rows = 8 * levels * points
+    return _row(
+        slowest({"load_L3": rows, "flop": 2 * weights * points}),
+        slowest({"rmw_L3": rows, "flop": 6 * weights * points}),
+    )
+
+
+def layers_bound(points: int, weights: int) -> dict[str, Any]:
+    """W7b: the three matrix products alone."""
+    return _row(slowest({"flop": 2 * weights * points}), slowest({"flop": 6 * weights * points}))
+
+
 def bsdf_bound(evaluations: int) -> dict[str, Any]:
     """W10: two directions read and a value written; 150 flop forward, 450 with the gradient."""
     bytes_moved = 36 * evaluations

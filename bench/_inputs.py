@@ -8,6 +8,7 @@ recorded for the usual sizes: a library or processor that rounds a sine differen
 from __future__ import annotations
 
 import hashlib
+import itertools
 from typing import Any
 
 import numpy as np
@@ -307,3 +308,29 @@ def splat_camera(res: int) -> tuple[Array, float]:
     rotation = np.stack([right, np.cross(forward, right), forward])
     view = np.column_stack([rotation, -rotation @ eye]).astype(np.float32)
     return view, float(0.5 * res / np.tan(np.radians(50.0) / 2))
+
+
+HASH = {"levels": 16, "coarsest": 16, "finest": 2048, "log2_rows": 19, "features": 2}
+"""Of W7a's encoding, as arguments of `HashEncoding.geometric`."""
+
+
+def field_points(count: int) -> tuple[Array, Array]:
+    """Points (N, 3) in [0, 1) and target values (N, 4), float32."""
+    points = np.random.default_rng(13).random((count, 3), dtype=np.float32)
+    waves = np.array([[3, 1, 2], [1, 4, 1], [2, 2, 3], [5, 1, 1]], np.float32)
+    return points, (0.5 + 0.5 * np.sin(6 * points @ waves.T)).astype(np.float32)
+
+
+def hash_tables() -> Array:
+    """Rows of all levels (levels, 2^log2_rows, features), float32; dense levels take the first."""
+    shape = HASH["levels"], 2 ** HASH["log2_rows"], HASH["features"]
+    return np.random.default_rng(11).uniform(-0.1, 0.1, shape).astype(np.float32)
+
+
+def layer_weights(sizes: list[int], seed: int = 12) -> list[Array]:
+    """Matrices (out, in) of layers of these sizes, float32."""
+    random = np.random.default_rng(seed)
+    return [
+        (random.standard_normal((gives, takes)) * np.sqrt(2.0 / takes)).astype(np.float32)
+        for takes, gives in itertools.pairwise(sizes)
+    ]

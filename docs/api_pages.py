@@ -29,7 +29,7 @@ DOOR = {
     "Photographs": "load_capture Capture View Camera estimate_bounds read_image",
     "Fitting": "fit evaluate render load_model Model Fit FitOptions",
     "Path tracing": "read_scene builtin_scene read_model PathTracer PathOptions Scene Material",
-    "Inverse rendering": "recover Target Unknown RecoveryOptions",
+    "Inverse rendering": "recover Target Parameter RecoveryOptions",
     "Representations": "representations check_gradients Representation DenseGrid SparseSh OctreeSh "
     "GaussianScene Gaussians",
     "Meshes, errors": "Mesh Bvh Error",
@@ -127,7 +127,10 @@ def unknown_files() -> list[str]:
 
 
 def all_docstrings() -> Iterator[str]:
-    """Of all modules, classes and functions that are not commands."""
+    """Of all modules, classes, functions and constants that are not commands."""
+    for module in api_names.modules().values():
+        if api_names.is_documented(module.name):
+            yield from (docstring for *_, docstring in module.constants.values())
     for name, folder in api_names.SOURCES.items():
         for path in folder.rglob("*.py"):
             parts = [name, *path.relative_to(folder).with_suffix("").parts]

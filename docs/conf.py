@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,6 +48,13 @@ napoleon_use_rtype = False
 python_use_unqualified_type_names = True
 toc_object_entries_show_parents = "hide"
 
+PROTOCOL = (
+    "photograd.representation.base",
+    "photograd.representation.fittable",
+    "photograd.fields.voxel_field",
+)
+"""Modules whose methods are described once, though many classes override them."""
+
 
 class KeyLabels(BaseLabelStyle):
     """The label of a reference is the key under which the sources cite it."""
@@ -75,7 +83,35 @@ def _edit_docstring(
     lines[:] = docstrings.to_rst(lines, is_property=what in {"attribute", "property"})
 
 
+def _edit_signature(
+    _app: Sphinx,
+    _what: str,
+    _name: str,
+    _thing: object,
+    _options: object,
+    signature: str | None,
+    returns: str | None,
+) -> tuple[str | None, str | None]:
+    """Short names in signatures that autodoc cannot parse, as those with `<factory>`."""
+    return signature and re.sub(r"~(?:\w+\.)+(\w)", r"\1", signature), returns
+
+
+def _skip_overrides(
+    _app: Sphinx, _what: str, _name: str, thing: Any, _skip: bool, _options: object
+) -> bool | None:
+    """Methods that a representation has by protocol are described there, not in each class."""
+    thing = getattr(thing, "fget", None) or getattr(thing, "__func__", thing)
+    owner, _, name = getattr(thing, "__qualname__", "").rpartition(".")
+    cls = getattr(sys.modules.get(getattr(thing, "__module__", "")), owner, None)
+    if not isinstance(cls, type):
+        return None
+    bases = (base for base in cls.__mro__[1:] if base.__module__ in PROTOCOL)
+    return True if any(name in vars(base) for base in bases) else None
+
+
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
+    app.connect("autodoc-process-signature", _edit_signature)
+    app.connect("autodoc-skip-member", _skip_overrides)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

@@ -73,9 +73,10 @@ def to_rst(lines: list[str], *, is_property: bool = False) -> list[str]:
         done.extend(escape("\n".join(prose)).split("\n") if prose else [])
         prose.clear()
 
-    # Napoleon takes what stands before a colon in the first line of a property for its type.
+    # Napoleon takes what stands before a colon in the first line of a property for its type; an
+    # empty comment stands in for that line.
     if is_property:
-        lines = ["", *lines]
+        lines = ["..", "", *lines]
     # Attributes of one name in many classes would be taken for targets of links.
     for line in ("Fields:" if line == "Attributes:" else line for line in lines):
         indented = line.startswith(" ")

@@ -1,14 +1,12 @@
 """Right answers of the generated questions; `reference` is the solution."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
 
 def last_point(reference, curvature, reach, start, steps):
-    """Where a walk on f(x) = curvature / 2 (x - 1)^2 ends."""
+    """Where a run on f(x) = curvature / 2 (x - 1)^2 ends."""
     points, _, _ = reference.gd_1d(
         lambda x: 0.5 * curvature * (x - 1.0) ** 2,
         lambda x: curvature * (x - 1.0),
@@ -26,7 +24,7 @@ def largest_stable_step(reference, a, b, c):
 
 
 def distance_down_the_plane(reference, beta, tau, slope):
-    """How far `momentum` gets in 20 steps down a plane."""
+    """Distance of `momentum` after 20 steps for a linear function."""
     points = reference.momentum(lambda _: np.array([slope]), np.zeros(1), tau, beta, 20)
     distance = float(-points[-1, 0])
     lengths = math.fsum(tau * slope * (1.0 - beta**k) / (1.0 - beta) for k in range(1, 21))

@@ -1,8 +1,8 @@
-"""Assignment 01: walk downhill.
+"""Assignment 01: gradient descent.
 
 Six functions that take other functions as arguments. Everything is float64. A point in N
-dimensions is an array of shape (N,); the points of a walk are the rows of an array (n + 1, N), the
-start among them. Never change an array that you were given: make a new one.
+dimensions is an array of shape (N,); the iterates are the rows of an array (n + 1, N), the initial
+point included. Never change a given array: make a new one.
 
 `photograd course check 01` tells how far you are.
 """
@@ -10,20 +10,25 @@ start among them. Never change an array that you were given: make a new one.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 
-Loss = Callable[[np.ndarray], float]  # (N,) -> float
-Gradient = Callable[[np.ndarray], np.ndarray]  # (N,) -> (N,)
+# Arrays and their shapes; float64 where nothing else is said.
+Point = Annotated[np.ndarray, "N"]
+Points = Annotated[np.ndarray, "steps N"]  # of a walk, the start first
+Values = Annotated[np.ndarray, "steps"]
+Loss = Callable[[Point], float]
+Gradient = Callable[[Point], Point]
 
 
-def numeric_derivative(f: Loss, x: np.ndarray, eps: float) -> np.ndarray:
-    """The gradient of f at x from values of f alone, by central differences, Eq. (3).
+def numeric_derivative(f: Loss, x: Point, eps: float) -> Point:
+    """The gradient of f at x by central finite differences, Eq. (3).
 
     Args:
         f: the function; takes an array (N,), returns a float.
-        x: where, (N,) float64. It stays as it is.
-        eps: how far to move in each coordinate, in the unit of x, > 0.
+        x: the point, (N,) float64. It must not change.
+        eps: the step in each coordinate, in the unit of x, > 0.
 
     Returns:
         The gradient, (N,) float64. f is called 2 N times.
@@ -40,19 +45,19 @@ def numeric_derivative(f: Loss, x: np.ndarray, eps: float) -> np.ndarray:
 
 def gd_1d(
     f: Callable[[float], float], df: Callable[[float], float], x0: float, tau: float, n: int
-) -> tuple[np.ndarray, np.ndarray, bool]:
-    """n steps of gradient descent on a function of one variable, Eq. (5), and a verdict, Eq. (8).
+) -> tuple[Values, Values, bool]:
+    """n steps of gradient descent on a function of one variable, Eq. (5), and a flag, Eq. (8).
 
     Args:
         f: the function, float -> float; may return NaN where it is not defined.
-        df: its derivative, float -> float; call it once a step.
-        x0: where to start.
-        tau: step length, > 0.
+        df: its derivative, float -> float; call it once per step.
+        x0: the initial point.
+        tau: learning rate, > 0.
         n: number of steps, >= 0.
 
     Returns:
         The points x_0 ... x_n, (n + 1,) float64; the values f(x_0) ... f(x_n), (n + 1,) float64;
-        and True if the walk went wrong: the last value is not at most the first.
+        and True if it went wrong: the last value is not at most the first.
     """
     # >>> solution 01.2
     x = np.full(n + 1, x0)
@@ -63,21 +68,19 @@ def gd_1d(
     # <<< solution
 
 
-def gd_nd(
-    f: Loss, grad: Gradient, x0: np.ndarray, tau: float, n: int
-) -> tuple[np.ndarray, np.ndarray, bool]:
+def gd_nd(f: Loss, grad: Gradient, x0: Point, tau: float, n: int) -> tuple[Points, Values, bool]:
     """n steps of gradient descent on a function of N variables, Eq. (9).
 
     Args:
         f: the function, (N,) -> float; may return NaN where it is not defined.
-        grad: its gradient, (N,) -> (N,); call it once a step.
-        x0: where to start, (N,) float64. It stays as it is.
-        tau: step length, > 0.
+        grad: its gradient, (N,) -> (N,); call it once per step.
+        x0: the initial point, (N,) float64. It must not change.
+        tau: learning rate, > 0.
         n: number of steps, >= 0.
 
     Returns:
         The points x_0 ... x_n, (n + 1, N) float64; the values f(x_0) ... f(x_n), (n + 1,) float64;
-        and True if the walk went wrong, as in `gd_1d`.
+        and True if it went wrong, as in `gd_1d`.
     """
     # >>> solution 01.3
     x = np.tile(x0, (n + 1, 1))
@@ -88,14 +91,14 @@ def gd_nd(
     # <<< solution
 
 
-def momentum(grad: Gradient, x0: np.ndarray, tau: float, beta: float, n: int) -> np.ndarray:
-    """n steps of gradient descent with a velocity, Eqs. (12) and (13), from rest.
+def momentum(grad: Gradient, x0: Point, tau: float, beta: float, n: int) -> Points:
+    """n steps of gradient descent with momentum, Eqs. (12) and (13), from rest.
 
     Args:
-        grad: the gradient, (N,) -> (N,); call it once a step.
-        x0: where to start, (N,) float64. It stays as it is.
-        tau: step length, > 0.
-        beta: the part of the velocity that survives a step, 0 <= beta < 1.
+        grad: the gradient, (N,) -> (N,); call it once per step.
+        x0: the initial point, (N,) float64. It must not change.
+        tau: learning rate, > 0.
+        beta: the decay of the velocity, 0 <= beta < 1.
         n: number of steps, >= 0.
 
     Returns:
@@ -112,22 +115,22 @@ def momentum(grad: Gradient, x0: np.ndarray, tau: float, beta: float, n: int) ->
 
 def adam(
     grad: Gradient,
-    x0: np.ndarray,
+    x0: Point,
     tau: float,
     n: int,
     beta1: float = 0.9,
     beta2: float = 0.999,
     eps: float = 1e-8,
-) -> np.ndarray:
+) -> Points:
     """n steps of Adam, Eqs. (16) to (20), both moments starting at zero.
 
     Args:
-        grad: the gradient, (N,) -> (N,); call it once a step.
-        x0: where to start, (N,) float64. It stays as it is.
-        tau: step length, > 0.
+        grad: the gradient, (N,) -> (N,); call it once per step.
+        x0: the initial point, (N,) float64. It must not change.
+        tau: learning rate, > 0.
         n: number of steps, >= 0.
         beta1, beta2: decay of the first and of the second moment, 0 <= beta < 1.
-        eps: keeps the quotient finite; stands outside the square root.
+        eps: keeps the quotient finite; it is outside the square root.
 
     Returns:
         The points x_0 ... x_n, (n + 1, N) float64.
@@ -149,33 +152,33 @@ def adam(
 def backtracking(
     f: Loss,
     grad: Gradient,
-    x: np.ndarray,
-    d: np.ndarray,
+    x: Point,
+    d: Point,
     tau0: float = 1.0,
     c: float = 1e-4,
     shrink: float = 0.5,
 ) -> float:
-    """The first of tau0, tau0 shrink, tau0 shrink^2, ... that satisfies Armijo's rule, Eq. (22).
+    """Backtracking: the first of tau0, tau0 shrink, ... that satisfies Armijo's rule, Eq. (22).
 
     Args:
         f: the function, (N,) -> float; where it returns NaN, a step is not acceptable.
         grad: its gradient, (N,) -> (N,).
-        x: where we stand, (N,) float64. It stays as it is.
-        d: the direction in which to walk, (N,); need not be minus the gradient.
-        tau0: the step length to try first, > 0.
-        c: the part of the promised decrease that is asked for, 0 < c < 1.
-        shrink: by what a refused step length is multiplied, 0 < shrink < 1.
+        x: the current point, (N,) float64. It must not change.
+        d: the search direction, (N,); need not be minus the gradient.
+        tau0: the first step size to try, > 0.
+        c: the required fraction of the predicted decrease, 0 < c < 1.
+        shrink: the factor for a rejected step size, 0 < shrink < 1.
 
     Returns:
-        The step length, a float.
+        The step size, a float.
 
     Raises:
-        ValueError: d does not lead downhill: its scalar product with the gradient is not < 0.
+        ValueError: d is not downhill: its scalar product with the gradient is not < 0.
     """
     # >>> solution 01.6
     slope = float(grad(x) @ d)
     if not slope < 0.0:
-        raise ValueError(f"d does not lead downhill: slope {slope}")
+        raise ValueError(f"d is not downhill: directional derivative {slope}")
     tau, start = tau0, f(x)
     while not f(x + tau * d) <= start + c * tau * slope:
         tau *= shrink

@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Assignment 01, for play
+# # Assignment 01, experiments
 #
 # Nothing here is graded. Each cell uses your own `descent.py`; a cell whose function is not written
 # yet stops with the name of the task. Change numbers, run again. The whole script takes seconds.
@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 
 if __name__ == "__main__" and "get_ipython" not in globals():
-    mpl.use("Agg")  # as a script: pictures go to files
+    mpl.use("Agg")  # as a script: figures go to files
 import matplotlib.pyplot as plt
 
 OUT = Path("explore")
@@ -20,7 +20,7 @@ OUT.mkdir(exist_ok=True)
 
 
 def keep(name):
-    """Save the current picture, and show it in a notebook."""
+    """Save the current figure, and show it in a notebook."""
     plt.tight_layout()
     plt.savefig(OUT / f"{name}.png", dpi=110)
     plt.show() if "get_ipython" in globals() else plt.close()
@@ -43,16 +43,16 @@ plt.ylabel("error")
 keep("differences")
 
 # %% [markdown]
-# ## 2. Two valleys
-# Every start on the axis, one row for each tau, colored by the valley in which it ends. With
-# tau = 0.05 there is one border, at the top of the hump. How many are there with 0.15 and with 0.2?
-# Where a color is missing, the walk flies off.
+# ## 2. Two local minima
+# Every start on the axis, one row for each tau, colored by the minimum in which it ends (its *basin
+# of attraction*). With tau = 0.05 there is one border, at the local maximum. How many are there
+# with 0.15 and with 0.2? Where a color is missing, the iterates diverge.
 
 
 # %%
 def f(x):
     across = x * x - 1.0
-    return across * across + 0.2 * x  # a power would raise OverflowError where a walk flies off
+    return across * across + 0.2 * x  # a power would raise OverflowError on divergence
 
 
 def df(x):
@@ -67,7 +67,7 @@ for row, tau in enumerate(taus):
     for side, color in ((ends < 0.0, "C0"), (ends > 0.0, "C1")):
         plt.plot(starts[side], np.full(side.sum(), row), "|", ms=25, color=color)
     borders = np.count_nonzero(np.diff(ends[np.isfinite(ends)] > 0.0))
-    print(f"tau = {tau}: {borders} borders, {np.count_nonzero(~np.isfinite(ends))} starts fly off")
+    print(f"tau = {tau}: {borders} borders, {np.count_nonzero(~np.isfinite(ends))} starts diverge")
 plt.ylim(-0.6, len(taus) - 0.4)
 plt.yticks(range(len(taus)), [f"tau = {tau}" for tau in taus])
 plt.xlabel("start; blue: ends on the left, orange: on the right")
@@ -75,8 +75,9 @@ keep("basins")
 
 # %% [markdown]
 # ## 3. Zig-zag
-# A bowl whose steep way is `kappa` times as steep. With the best step every step is a zig or a zag:
-# how many are there until 1 % of the distance is left, and how many when kappa doubles?
+# A quadratic with condition number `kappa`. With the best learning rate the steep coordinate
+# changes sign in each step: how many are there until 1 % of the distance is left, and how many when
+# kappa doubles?
 
 # %%
 kappa, start, n = 30.0, np.array([-2.0, 0.4]), 60
@@ -92,7 +93,7 @@ def slope(x):
 
 
 def contours(walks, name):
-    """The bowl from above, with some walks."""
+    """Contours of the quadratic, with some runs."""
     x, y = np.meshgrid(np.linspace(-2.3, 1.0, 150), np.linspace(-1.0, 1.0, 100))
     plt.contour(x, y, 0.5 * (x**2 + kappa * y**2), levels=np.geomspace(0.02, 15, 10), colors="0.8")
     for label, walk in walks.items():
@@ -105,7 +106,7 @@ def contours(walks, name):
 
 best = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), n)[0]
 edge = descent.gd_nd(bowl, slope, start, 1.98 / kappa, n)[0]
-contours({"best step": best, "near the bound": edge}, "zigzag")
+contours({"best learning rate": best, "near the bound": edge}, "zigzag")
 
 for steep in (kappa, 2.0 * kappa, 4.0 * kappa):
     bends = np.array([1.0, steep])
@@ -121,7 +122,7 @@ for steep in (kappa, 2.0 * kappa, 4.0 * kappa):
 
 # %% [markdown]
 # ## 4. Momentum
-# Try beta = 0.5, 0.7, 0.9, 0.97. Where does the ball begin to overshoot along the valley?
+# Try beta = 0.5, 0.7, 0.9, 0.97. Where does it begin to overshoot along the valley?
 
 # %%
 contours(
@@ -131,9 +132,10 @@ contours(
 
 # %% [markdown]
 # ## 5. Adam
-# Gradient descent with the best step is ahead on this bowl nearly all the way: Adam's gain is that
-# nobody had to know 2 / (1 + kappa). Turn the bowl by 45 degrees: gradient descent does not notice,
-# and Adam falls far behind at first. Why? Try other values of tau for Adam.
+# Gradient descent with the best learning rate is ahead on this quadratic nearly all the way: the
+# advantage of Adam is that 2 / (1 + kappa) need not be known. Rotate the quadratic by 45 degrees:
+# gradient descent behaves the same, and Adam is far slower at first. Why? Try other values of tau
+# for Adam.
 
 # %%
 turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
@@ -143,19 +145,20 @@ def turned(x):
     return turn @ (hessian * (turn.T @ x))
 
 
-for label, grad, x0 in (("Adam", slope, start), ("Adam, turned", turned, turn @ start)):
+for label, grad, x0 in (("Adam", slope, start), ("Adam, rotated", turned, turn @ start)):
     walk = descent.adam(grad, x0, 0.05, 300)
     plt.semilogy(np.linalg.norm(walk, axis=1), label=label)
 plain = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), 300)[0]
-plt.semilogy(np.linalg.norm(plain, axis=1), label="gradient descent, best step")
+plt.semilogy(np.linalg.norm(plain, axis=1), label="gradient descent, best learning rate")
 plt.xlabel("step")
 plt.ylabel("distance")
 plt.legend()
 keep("adam")
 
 # %% [markdown]
-# ## 6. A step length that looks first
-# Rosenbrock's valley: no fixed step is right everywhere. Which lengths does the search choose?
+# ## 6. Backtracking line search
+# Rosenbrock's function: no constant learning rate is right everywhere. Which step sizes does the
+# line search choose?
 
 
 # %%

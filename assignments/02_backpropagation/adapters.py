@@ -1,10 +1,8 @@
 """Between the checks and your engine: graphs come as lists of numbers, and numbers go back.
 
-Runs beside your `engine.py`; nothing here is to be changed or handed in. A node is known by its
+Runs beside your `engine.py`; do not change or submit it. A node is known by its
 place in a list; inputs stand first, and every node after those that it uses.
 """
-
-from __future__ import annotations
 
 import engine
 import numpy as np
@@ -21,20 +19,20 @@ class MalformedValue(TypeError):
 
 
 def required_value(op, result):
-    """`result` of the gate `op`, if it is a Value whose inputs are pairs (value, slope).
+    """`result` of the gate `op`, if it is a Value whose inputs are pairs (value, local derivative).
 
     Raises:
         MalformedValue: it is not; says what it is, and what was expected.
     """
     if not isinstance(result, engine.Value):
         raise MalformedValue(f"{op}: expected a Value as result, got {type(result).__name__}")
-    pairs, wanted = result.inputs, "inputs must be a tuple of pairs (value, slope)"
+    pairs, wanted = result.inputs, "inputs must be a tuple of pairs (value, local derivative)"
     if isinstance(pairs, (tuple, list)) and all(map(is_pair, pairs)):
         return result
     if is_pair(pairs):
         raise MalformedValue(
-            f"{op}: {wanted}, yours is one pair by itself: ((x, slope)) is (x, slope); "
-            "put a comma behind the pair: ((x, slope),)"
+            f"{op}: {wanted}, yours is one pair: ((x, du_dx)) is (x, du_dx); "
+            "put a comma after the pair: ((x, du_dx),)"
         )
     if not isinstance(pairs, (tuple, list)):
         raise MalformedValue(f"{op}: {wanted}, yours is a {type(pairs).__name__}")
@@ -77,7 +75,7 @@ def apply(op, a, b):
 
 
 def gate(op, a, b=None, same=False):
-    """One gate alone: its value, and the slope that it noted for each of its inputs.
+    """One gate alone: its value, and the local derivative that it stored for each of its inputs.
 
     Args:
         op: name of the gate.
@@ -86,8 +84,8 @@ def gate(op, a, b=None, same=False):
         same: a is both inputs, as in x * x.
 
     Returns:
-        {"value", "slopes": (2,), "strangers"}: slopes towards a and b, summed over uses, and how
-        many of the recorded inputs are neither of the two.
+        {"value", "slopes": (2,), "strangers"}: local derivatives of a and b, summed over uses, and
+        the number of recorded inputs that are neither of the two.
     """
     first = engine.Value(a)
     plain = b is None or op in {"pow", "radd", "rmul"}
@@ -105,7 +103,7 @@ def gate(op, a, b=None, same=False):
 
 
 def gates(op, a, b, same=False):
-    """`gate` for arrays a (N,) and b (N,) or None: values (N,), slopes (N, 2)."""
+    """`gate` for arrays a (N,) and b (N,) or None: values (N,), local derivatives (N, 2)."""
     second = [None] * len(a) if b is None else [float(number) for number in b]
     done = [gate(op, float(x), y, same) for x, y in zip(a, second, strict=True)]
     values = np.array([each["value"] for each in done])
@@ -133,7 +131,7 @@ def run_graph(program, inputs, seed=1.0):
 
 
 def run_graphs(programs, inputs):
-    """`run_graph` of each program: last values (P,), gradients by the inputs as a list."""
+    """`run_graph` of each program: last values (P,), gradients of the inputs as a list."""
     last, gradients = [], []
     for program, given in zip(programs, inputs, strict=True):
         nodes = build(program, given)

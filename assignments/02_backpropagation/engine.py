@@ -1,8 +1,8 @@
 """Reverse-mode differentiation on a graph of scalars.
 
-A `Value` is a number that remembers how it was made: from which values, and with which slope (the
-derivative of the result by that input, at the numbers at hand). `backward` walks from the result to
-the inputs and multiplies and adds slopes.
+A `Value` is a number together with the values from which it was computed, and the local derivative
+of each use (the derivative of the result with respect to that input, at the current numbers).
+`backward` goes from the result to the inputs and applies the chain rule.
 
 Your tasks are the functions that raise NotImplementedError; `photograd course check 02` tells how
 far you are. Equations are those of the handout.
@@ -11,8 +11,13 @@ far you are. Equations are those of the handout.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vector = Annotated[np.ndarray, "N"]
 
 
 class Value:
@@ -20,8 +25,8 @@ class Value:
 
     Attributes:
         data: the number, a float.
-        grad: derivative of the root by this number; set by `backward`.
-        inputs: pairs (value, slope), one for each use of an input; () for a leaf.
+        grad: derivative of the root with respect to this number; set by `backward`.
+        inputs: pairs (value, local derivative), one for each use of an input; () for a leaf.
     """
 
     def __init__(self, data, inputs=()):
@@ -29,22 +34,22 @@ class Value:
         self.grad = 0.0
         self.inputs = inputs
 
-    def __add__(self, other):
+    def __add__(self, other: Value | float) -> Value:
         """self + other; `other` may be a plain number. Eq. (5)."""
         other = as_value(other)
         # >>> solution 02.1
         return Value(self.data + other.data, ((self, 1.0), (other, 1.0)))
         # <<< solution
 
-    def __mul__(self, other):
+    def __mul__(self, other: Value | float) -> Value:
         """self * other; `other` may be a plain number. Eq. (6)."""
         other = as_value(other)
         # >>> solution 02.1
         return Value(self.data * other.data, ((self, other.data), (other, self.data)))
         # <<< solution
 
-    def maximum(self, other):
-        """The larger of self and other; at a tie `other` takes all. Eq. (7)."""
+    def maximum(self, other: Value | float) -> Value:
+        """The larger of self and other; at a tie `other` gets the derivative. Eq. (7)."""
         other = as_value(other)
         # >>> solution 02.2
         wins = 1.0 if self.data > other.data else 0.0
@@ -52,33 +57,33 @@ class Value:
         return Value(larger, ((self, wins), (other, 1.0 - wins)))
         # <<< solution
 
-    def exp(self):
+    def exp(self) -> Value:
         """The exponential of self. Eq. (8)."""
         # >>> solution 02.3
         grown = math.exp(self.data)
         return Value(grown, ((self, grown),))
         # <<< solution
 
-    def log(self):
+    def log(self) -> Value:
         """The natural logarithm of self, which must be positive. Eq. (9)."""
         # >>> solution 02.3
         return Value(math.log(self.data), ((self, 1.0 / self.data),))
         # <<< solution
 
-    def __pow__(self, n):
+    def __pow__(self, n: float) -> Value:
         """self to the power of a plain number n, which is no input of the graph. Eq. (10)."""
         # >>> solution 02.3
         return Value(self.data**n, ((self, n * self.data ** (n - 1)),))
         # <<< solution
 
     def __truediv__(self, other):
-        """self / other: the twin that the handout derives, Eq. (4). Nothing to do here."""
+        """self / other: the worked example of the handout, Eq. (4). Nothing to do here."""
         other = as_value(other)
         quotient = self.data / other.data
         d_self, d_other = 1.0 / other.data, -quotient / other.data
         return Value(quotient, ((self, d_self), (other, d_other)))
 
-    # What is made of the others.
+    # Composed of the other gates.
 
     def __radd__(self, other):
         return self + other
@@ -107,15 +112,15 @@ def as_value(number):
     return number if isinstance(number, Value) else Value(number)
 
 
-def topo_order(root):
-    """The values that `root` depends on, in an order in which every input precedes its users.
+def topo_order(root: Value) -> list[Value]:
+    """A topological order of the values that `root` depends on: inputs precede their users.
 
     Args:
         root: a `Value`.
 
     Returns:
-        A list; each value stands in it once, `root` last. The time is proportional to the number of
-        values and uses, and the depth of the graph does not matter.
+        A list of each value once, `root` last. The time is proportional to the number of values and
+        uses, and the depth of the graph is not limited.
     """
     # >>> solution 02.4
     order, seen = [], set()
@@ -133,15 +138,15 @@ def topo_order(root):
     # <<< solution
 
 
-def backward(root, seed=1.0):
+def backward(root: Value, seed: float = 1.0) -> None:
     """Set `grad` of every value that `root` depends on to seed * d root / d value. Eq. (13).
 
-    What was in `grad` before does not matter: these values start from zero at each call. Values
-    that `root` does not depend on are left alone.
+    Each call first sets the gradients of these values to zero. Values that `root` does not depend
+    on do not change.
 
     Args:
         root: a `Value`, the end of the graph.
-        seed: derivative of whatever follows by the root; 1 where nothing follows.
+        seed: the gradient of the root: 1, or that of a larger computation that uses the root.
     """
     # >>> solution 02.5
     order = topo_order(root)
@@ -154,13 +159,13 @@ def backward(root, seed=1.0):
     # <<< solution
 
 
-def grad_check(f, x, eps=1e-5):
-    """How far a gradient is from central differences, Eqs. (14) to (16).
+def grad_check(f: Callable[[Vector], tuple[float, Vector]], x: Vector, eps: float = 1e-5) -> float:
+    """The relative error of a gradient, by central differences, Eqs. (14) to (16).
 
     Args:
         f: f(x) returns (value, gradient) at x, a float and an array (N,).
         x: float64 array (N,); it is not changed.
-        eps: the step for coordinates up to 1; coordinate i moves by eps * max(1, |x_i|).
+        eps: the step for coordinates up to 1; that of coordinate i is eps * max(1, |x_i|).
 
     Returns:
         ||gradient - differences|| / max(||gradient||, ||differences||), a float: at most 1e-6 for a
@@ -186,7 +191,7 @@ def grad_check(f, x, eps=1e-5):
 
 
 def value_and_gradient(f, x):
-    """The value of f and its gradient by `backward`.
+    """The value of f, and its gradient from `backward`.
 
     Args:
         f: takes a list of N `Value`s and returns one.

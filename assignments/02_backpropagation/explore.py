@@ -19,7 +19,7 @@ HERE = Path(__file__).parent if "__file__" in globals() else Path()
 # %% [markdown]
 # ## 1. Is your gradient right?
 #
-# Change the formula as you like. Then make a gate wrong on purpose, and see what `grad_check` says.
+# Change the formula as you like. Then break a gate on purpose, and look at `grad_check`.
 
 
 # %%
@@ -33,12 +33,12 @@ print("value and gradient:", value_and_gradient(formula, place))
 print("grad_check:", grad_check(lambda x: value_and_gradient(formula, x), place))
 
 # %% [markdown]
-# ## 2. A gradient is a picture
+# ## 2. A gradient is an image
 #
-# The texels of a small picture are seen through a blur. The derivative of the error by each texel
-# has the shape of the picture: blue where a texel should be raised, red where it should be lowered.
-# After many steps dark and bright rims appear: the engine finds the texels that look right when
-# blurred.
+# The pixels of a small image are its texels, blurred. The derivative of the error with respect to
+# each texel has the shape of the image: blue where a texel should be increased, red where it should
+# be decreased. After many steps dark and bright edges appear: the engine finds the texels that look
+# right when blurred.
 
 # %%
 row, column = np.mgrid[0:12, 0:20]
@@ -60,7 +60,7 @@ def seen_through_blur(texels):
 
 
 def picture_loss(texels):
-    """The squared error, and its derivative by each texel."""
+    """The squared error, and its derivative with respect to each texel."""
     leaves = [[Value(number) for number in line] for line in texels]
     total = Value(0.0)
     for line, should in zip(seen_through_blur(leaves), wanted, strict=True):
@@ -90,9 +90,9 @@ for k, (number, picture, slopes) in enumerate(shown):
 figure.savefig(HERE / "explore_picture.png", dpi=110)
 
 # %% [markdown]
-# ## 3. A network of 25 parameters learns a curve
+# ## 3. A neural network of 25 parameters, trained on a curve
 #
-# Eight hinges, max(0, w x + b), weighted and added. Try three hinges, or a longer step.
+# A weighted sum of eight ReLUs, max(0, w x + b). Try three, or a larger learning rate.
 
 # %%
 HINGES, STEPS, LENGTH = 8, 200, 0.35
@@ -110,7 +110,7 @@ parameters = np.concatenate(
 
 
 def network(p, x):
-    """The sum of all hinges at one number x; p are numbers or Values."""
+    """The network at one number x; p are numbers or Values."""
     out = p[3 * HINGES]
     for k in range(HINGES):
         out = out + p[2 * HINGES + k] * (p[k] * float(x) + p[HINGES + k]).maximum(0.0)
@@ -133,7 +133,7 @@ for number in range(STEPS):
     parameters = parameters - LENGTH * slopes
     if number in {9, STEPS - 1}:
         curves.append(parameters.copy())
-print(f"misfit {losses[0]:.4f} -> {losses[-1]:.5f}")
+print(f"loss {losses[0]:.4f} -> {losses[-1]:.5f}")
 
 figure = Figure(figsize=(9, 3.2), layout="constrained")
 left, right = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
@@ -142,5 +142,5 @@ for p, name in zip(curves, ("start", "10 steps", f"{STEPS} steps"), strict=True)
     left.plot(xs, [network([Value(number) for number in p], x).data for x in xs], label=name)
 left.legend()
 right.semilogy(losses)
-right.set(xlabel="step", ylabel="misfit")
+right.set(xlabel="step", ylabel="loss")
 figure.savefig(HERE / "explore_network.png", dpi=110)

@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -12,7 +10,7 @@ def sample_of_a_plane(reference, a, b, u, v):
 
 
 def curvature_of_two_spots(reference, m, k):
-    """The estimate after two rounds for m samples at one center and k at another."""
+    """The estimate after two iterations for m samples at one center and k at another."""
     spots = np.array([[0.125, 0.25], [0.625, 0.75]])  # of columns 0 and 2, rows 1 and 4
     return reference.largest_curvature((6, 4), np.repeat(spots, [int(m), int(k)], axis=0), 2)
 

@@ -1,14 +1,12 @@
 # %% [markdown]
 # # Recovering a photograph
-# Measures a picture at scattered places and recovers it with your functions, next to the C++ core
-# where that is installed. Never graded. Run it as `python explore.py`, with your own picture as
-# `python explore.py --image FILE`; `--size`, `--samples` (for each texel) and `--steps` change the
-# amount of work. `--fine 4` measures a picture with four times as many rows and columns as the
-# texture that you look for: its edges lie inside texels then.
+# Measures an image at random points and recovers it with your functions, next to the C++ core where
+# that is installed. Never graded. Run it as `python explore.py`, with your own image as `python
+# explore.py --image FILE`; `--size`, `--samples` (per texel) and `--steps` change the amount of
+# work. `--fine 4` measures an image with four times as many rows and columns as the recovered
+# texture: its edges then lie inside texels.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 from importlib.util import find_spec
@@ -26,9 +24,9 @@ fine = int(option("fine", 1))
 
 
 # %% [markdown]
-# ## A picture
-# Files hold encoded values; light adds up only when they are decoded, so that is done first
-# (roughly, by a power of 2.2).
+# ## An image
+# Files store gamma-encoded values; only linear values may be averaged, so they are decoded first
+# (approximately, by a power of 2.2).
 
 
 # %%
@@ -44,7 +42,7 @@ def hills(n):
 
 
 def photograph():
-    """(picture, where it is from); linear values (H, W, 3)."""
+    """(image, its origin); linear values (H, W, 3)."""
     if file := option("image", ""):
         picture, origin = Image.open(file, formats=("PNG", "JPEG")).convert("RGB"), file
     elif find_spec("skimage") is not None:
@@ -63,7 +61,7 @@ truth = wall.reshape(rows, fine, columns, fine, 3).mean(axis=(1, 3))  # one mean
 rng = np.random.default_rng(0)
 places = rng.random((int(samples_per_texel * rows * columns), 2))
 measured = mine.bilinear_sample(wall, places)
-print(f"picture: {origin}, {truth.shape[1]} x {truth.shape[0]}, measured {len(places)} times")
+print(f"image: {origin}, {truth.shape[1]} x {truth.shape[0]}, measured {len(places)} times")
 
 # %% [markdown]
 # ## Your functions
@@ -79,10 +77,10 @@ print(f"yours: {steps} steps in {seconds:.2f} s, {decibels:.1f} dB, {unknown.sum
 print(f"loss:  {history[0]:.3g} at the start, {history[-1]:.3g} at the end")
 
 # %% [markdown]
-# ## The slow part
-# Steps of half the largest stable length shrink each pattern, the slow ones least. So they leave a
-# mixture of slow ones, and the Rayleigh quotient of that is an estimate, from above, of the
-# smallest eigenvalue. One channel is enough.
+# ## The smallest eigenvalue
+# Half the largest stable learning rate shrinks each component, those of small eigenvalues least.
+# The Rayleigh quotient of the remainder is an estimate, from above, of the smallest eigenvalue. One
+# channel is enough.
 
 # %%
 left = np.where(unknown[:, :, None], 0.0, found - truth)
@@ -94,7 +92,7 @@ if slow.any() and rows * columns > 1:
         slow = slow / np.linalg.norm(slow)
     smallest = np.sum(slow * mine.loss_and_grad(slow, places, nothing)[1])
     print(f"slow:  the smallest eigenvalue is 1/{largest / smallest:.0f} of the largest, or less;")
-    print(f"       a step leaves {1 - 0.95 * 2 * smallest / largest:.3f} of such a pattern")
+    print(f"       a step leaves {1 - 0.95 * 2 * smallest / largest:.3f} of its component")
 
 # %% [markdown]
 # ## The C++ core on the same samples
@@ -115,10 +113,9 @@ else:
     )
 
 # %% [markdown]
-# ## Pictures
-# Look at the gradient of the first step beside what was missing: the adjoint paints the one
-# from the other. It also paints the last picture: the squared residual of each sample, shared out
-# to the texels that it came from.
+# ## Figures
+# Compare the gradient of the first step with the error: the adjoint scatters the residuals. In the
+# last image it scatters the squared residual of each sample to its texels.
 
 # %%
 _, slope = mine.loss_and_grad(beginning, places, measured)
@@ -155,4 +152,4 @@ axes = figure.add_subplot(2, 4, 8)
 axes.semilogy(history)
 axes.set(title="loss", xlabel="step")
 figure.savefig("recovered.png", dpi=110)
-print("recovered.png: what was found, the first gradient beside what was missing, what is left")
+print("recovered.png: the texture, the first gradient beside the error, the residual")

@@ -1,9 +1,9 @@
-"""Recovering a texture: bilinear samples, their adjoint, and descent to the texels behind them.
+"""Recovering a texture: bilinear interpolation, its adjoint, and gradient descent on the texels.
 
-A texture T has H rows, W columns and C channels, T[row, column, channel], row 0 on top. A place on
-it is (u, v), u to the right, v downwards, both from 0 to 1; the center of the texel in column j is
-at u = (j + 0.5) / W, of row i at v = (i + 0.5) / H. What lies beyond the outermost centers takes
-the value at the border.
+A texture T has H rows, W columns and C channels, T[row, column, channel], row 0 at the top. A point
+on it is (u, v), u to the right, v downward, both from 0 to 1; the center of the texel in column j
+is at u = (j + 0.5) / W, of row i at v = (i + 0.5) / H. Beyond the outermost centers the value at
+the border is repeated.
 
 Your tasks are the six functions below, one section of the handout each;
 `photograd course check 03` tells how far you are. All numbers are float64.
@@ -11,18 +11,28 @@ Your tasks are the six functions below, one section of the handout each;
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
-CURVATURE_ROUNDS = 40  # of power iteration, before a descent
-SAFETY = 0.95  # share of the largest stable step that a descent takes
+# Arrays and their shapes; float64 where nothing else is said.
+Texture = Annotated[np.ndarray, "H W C"]
+Places = Annotated[np.ndarray, "N 2"]  # (u, v)
+Samples = Annotated[np.ndarray, "N C"]
+Losses = Annotated[np.ndarray, "n+1"]
+Mask = Annotated[np.ndarray, "H W"]  # bool
+Shape = tuple[int, int]  # (H, W)
+
+CURVATURE_ROUNDS = 40  # iterations of the power method, before gradient descent
+SAFETY = 0.95  # fraction of the largest stable learning rate
 
 
-def bilinear_sample(T, uv):
-    """Values of a texture at given places.
+def bilinear_sample(T: Texture, uv: Places) -> Samples:
+    """Bilinear interpolation of a texture.
 
     Args:
-        T: (H, W, C), the texels; any H, W, C from 1 upwards.
-        uv: (N, 2), the places, u first.
+        T: (H, W, C), the texels; each 1 or more.
+        uv: (N, 2), points, u first.
 
     Returns:
         (N, C); handout equations (3) to (6).
@@ -40,16 +50,17 @@ def bilinear_sample(T, uv):
     # <<< solution
 
 
-def bilinear_sample_adjoint(shape, uv, g):
-    """The transpose of `bilinear_sample`: each sample's number goes back to its four texels.
+def bilinear_sample_adjoint(shape: Shape, uv: Places, g: Samples) -> Texture:
+    """The adjoint of `bilinear_sample`: scatters the derivative of each sample to four texels.
 
     Args:
-        shape: (H, W), a tuple or a list: take it apart, (*shape, 1) works for both.
-        uv: (N, 2), the places; the same place may occur many times.
-        g: (N, C), the derivative of some loss by each sample.
+        shape: (H, W), a tuple or a list: (*shape, 1) works for both.
+        uv: (N, 2), points; the same point may occur many times.
+        g: (N, C), the derivative of some loss with respect to each sample.
 
     Returns:
-        (H, W, C), the derivative of that loss by each texel; handout equations (7) and (8).
+        (H, W, C), the derivative of that loss with respect to each texel; handout equations (7)
+        and (8).
     """
     # >>> solution 03.2
     height, width = shape
@@ -67,13 +78,13 @@ def bilinear_sample_adjoint(shape, uv, g):
     # <<< solution
 
 
-def loss_and_grad(T, uv, target):
-    """How badly a texture explains the measured samples, and the derivative of that by its texels.
+def loss_and_grad(T: Texture, uv: Places, target: Samples) -> tuple[float, Texture]:
+    """Mean squared error of a texture at the measured points, and its gradient.
 
     Args:
         T: (H, W, C), the texels.
-        uv: (N, 2), where was measured.
-        target: (N, C), what was measured.
+        uv: (N, 2), the measured points.
+        target: (N, C), the measured values.
 
     Returns:
         (L, d_T): L a float, the sum of all squared differences divided by N, equation (9); d_T
@@ -87,18 +98,18 @@ def loss_and_grad(T, uv, target):
     # <<< solution
 
 
-def largest_curvature(shape, uv, n):
-    """The largest eigenvalue of the loss's Hessian, estimated by power iteration.
+def largest_curvature(shape: Shape, uv: Places, n: int) -> float:
+    """The largest eigenvalue of the Hessian of the loss, estimated by power iteration.
 
     The Hessian is the same for each channel and does not depend on texels or measurements.
 
     Args:
         shape: (H, W) of the texture, a tuple or a list.
-        uv: (N, 2), where was measured.
-        n: number of rounds, from 0 upwards, that start at a texture of ones.
+        uv: (N, 2), the measured points.
+        n: number of iterations, 0 or more, from a texture of ones.
 
     Returns:
-        the Rayleigh quotient after n rounds, a float; equations (11) to (13).
+        the Rayleigh quotient after n iterations, a float; equations (11) to (13).
     """
     # >>> solution 03.4
     x = np.ones((*shape, 1))
@@ -110,18 +121,20 @@ def largest_curvature(shape, uv, n):
     # <<< solution
 
 
-def recover_texture(T0, uv, target, n):
-    """Gradient descent with a fixed step, SAFETY times the largest stable one.
+def recover_texture(
+    T0: Texture, uv: Places, target: Samples, n: int
+) -> tuple[Texture, Losses, Mask]:
+    """Gradient descent with a constant learning rate, SAFETY times the largest stable one.
 
     Args:
-        T0: (H, W, C), where the descent starts; this array itself must not change.
-        uv: (N, 2), where was measured.
-        target: (N, C), what was measured.
-        n: number of steps, from 0 upwards.
+        T0: (H, W, C), the initial texture; this array must not change.
+        uv: (N, 2), the measured points.
+        target: (N, C), the measured values.
+        n: number of steps, 0 or more.
 
     Returns:
         (T, losses, unseen): T (H, W, C) after n steps; losses (n + 1,), of T0 first and of T last;
-        unseen (H, W) bool, True where no sample gives a texel any weight. Equations (14), (15).
+        unseen (H, W) bool, True where no sample has a weight for the texel. Equations (14), (15).
     """
     # >>> solution 03.5
     height, width, _ = T0.shape
@@ -137,15 +150,15 @@ def recover_texture(T0, uv, target, n):
     # <<< solution
 
 
-def build_mips(T):
-    """The pyramid of ever smaller versions of a texture, down to a single texel.
+def build_mips(T: Texture) -> list[Texture]:
+    """The mipmap of a texture, down to a single texel.
 
     Args:
         T: (H, W, C); H and W are powers of two, not always the same.
 
     Returns:
         a list: T itself first; each further level has half the rows and half the columns (a side of
-        one texel stays), each texel the mean of those it replaces, equation (16); last (1, 1, C).
+        one texel does not change), each texel is a mean, equation (16); last (1, 1, C).
     """
     # >>> solution 03.6
     levels = [T]

@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -29,7 +27,7 @@ def printed_albedo(reference, s, c):
 
 
 def albedo_slope(reference, r, c):
-    """Derivative of a white metal's albedo by its roughness."""
+    """Derivative of a white metal's albedo with respect to its roughness."""
 
     def slope(wo, wi):
         n = len(wo)

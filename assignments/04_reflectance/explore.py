@@ -1,14 +1,12 @@
 # %% [markdown]
 # # Your material
-# Draws the chart of your material, its lobe and the derivative by roughness; forgets roughness and
-# color of a ball and finds them again from its picture. Where the C++ core is installed, its
-# values stand beside yours. Never graded. Run it as `python explore.py`; `--roughness`,
-# `--metalness` and `--start` (the roughness that the fit begins with) change the ball, `--pixels`
-# and `--steps` the amount of work.
+# Renders a chart of your material, its lobe and the derivative with respect to roughness; recovers
+# the roughness and the color of a ball from its image. Where the C++ core is installed, its values
+# stand beside yours. Never graded. Run it as `python explore.py`; `--roughness`, `--metalness` and
+# `--start` (the initial roughness of the fit) change the ball, `--pixels` and `--steps` the amount
+# of work.
 
 # %%
-from __future__ import annotations
-
 import importlib
 
 import numpy as np
@@ -23,16 +21,16 @@ rough, metal_share, start = (
     option("start", 0.7),
 )
 COLOR = np.array([0.75, 0.3, 0.1])
-LAMPS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
+LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
 
 # %% [markdown]
 # ## A ball
-# Seen from far away; every pixel has a frame of its own, in which the normal is +z.
+# Seen from far away; every pixel has its own shading frame, in which the normal is +z.
 
 
 # %%
 def ball(size):
-    """Which pixels of (size, size) see the ball; for these wo (N, 3), and wi for each lamp."""
+    """Mask (size, size) of the ball's pixels; for these wo (N, 3), and wi for each light."""
     x = (np.arange(size) + 0.5) / size * 2.04 - 1.02
     right, up = np.meshgrid(x, -x)
     seen = right**2 + up**2 < 0.998
@@ -40,27 +38,27 @@ def ball(size):
     tangent = np.cross([0.0, 1.0, 0.0], normal)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
-    lights = [frame @ (np.array(place) / np.linalg.norm(place)) for place, _ in LAMPS]
+    lights = [frame @ (np.array(place) / np.linalg.norm(place)) for place, _ in LIGHTS]
     return seen, frame @ np.array([0.0, 0.0, 1.0]), lights
 
 
 def picture(scene, color, m, r, material):
-    """Radiance (N, 3) of the ball's pixels."""
+    """Radiance (N, 3) of the pixels of the ball."""
     _, wo, lights = scene
     n = len(wo)
     total = np.zeros((n, 3))
-    for wi, (_, strength) in zip(lights, LAMPS, strict=True):
+    for wi, (_, strength) in zip(lights, LIGHTS, strict=True):
         f = material(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r))
         total += np.pi * strength * np.maximum(wi[:, 2:], 0) * f
     return total
 
 
 def pulled(scene, color, m, r, d_picture):
-    """Derivatives of a loss by color (3,), metalness and roughness, and by roughness (N,)."""
+    """Gradient of a loss: color (3,), metalness, roughness, and the last per pixel (N,)."""
     _, wo, lights = scene
     n = len(wo)
     of_color, of_metal, of_rough = np.zeros((n, 3)), np.zeros(n), np.zeros(n)
-    for wi, (_, strength) in zip(lights, LAMPS, strict=True):
+    for wi, (_, strength) in zip(lights, LIGHTS, strict=True):
         g = np.pi * strength * np.maximum(wi[:, 2:], 0) * d_picture
         parts = mine.gltf_backward(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r), g)
         of_color, of_metal, of_rough = (
@@ -73,9 +71,9 @@ scene = ball(pixels)
 print(f"ball: {scene[0].sum()} pixels, roughness {rough:g}, metalness {metal_share:g}")
 
 # %% [markdown]
-# ## Forget and find
-# Mean squared error against the picture; Adam's steps as in assignment 01. Roughness moves between
-# 0.045 and 1, colors between 0 and 1; the metalness is known.
+# ## A fit
+# Mean squared error against the image; Adam as in assignment 01. Roughness is clamped to 0.045 to
+# 1, colors to 0 to 1; the metalness is known.
 
 # %%
 target = picture(scene, COLOR, metal_share, rough, mine.gltf)
@@ -95,7 +93,7 @@ print(f"fit: roughness {x[3]:.3f}, color {np.round(x[:3], 3)}")
 print(f"truth: roughness {rough:.3f}, color {COLOR}")
 
 # %% [markdown]
-# ## The furnace, and the C++ core
+# ## The furnace test, and the C++ core
 
 # %%
 views = np.array([0.3, 0.6, 1.0])
@@ -103,7 +101,9 @@ for r in (0.5, 0.75, 1.0):
     mirrors = mine.furnace(
         lambda wo, wi, r=r: mine.ggx_lobe(wo, wi, np.full(len(wo), r))[:, None], views
     )
-    print(f"perfect mirrors of roughness {r:g} return {np.round(mirrors[:, 0], 4)} from {views}")
+    print(
+        f"GGX with F = 1, roughness {r:g}: albedo {np.round(mirrors[:, 0], 4)} at cosines {views}"
+    )
 try:
     core = importlib.import_module("photograd.bsdf").registry()["gltf"]
 except ImportError:
@@ -115,10 +115,10 @@ else:
         return core.f(given, wo, np.ascontiguousarray(wi))
 
     off = np.abs(picture(scene, COLOR, metal_share, rough, core_gltf) - target).max()
-    print(f"core: its picture differs from yours by {off:.1e} at most")
+    print(f"core: its image differs from yours by {off:.1e} at most")
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 
 # %%
@@ -146,14 +146,14 @@ field = np.full(scene[0].shape, np.nan)
 field[scene[0]] = pulled(scene, COLOR, metal_share, rough, np.ones_like(target) / 3)[3]
 top = np.nanquantile(np.abs(field), 0.99)
 axes.imshow(field, cmap="RdBu_r", vmin=-top, vmax=top)
-axes.set(xticks=[], yticks=[], title="by roughness")
+axes.set(xticks=[], yticks=[], title="∂ / ∂ roughness")
 axes = figure.add_subplot(grid[2, 2:4])
 for k, name in enumerate(("red", "green", "blue")):
     axes.plot(trail[:, k], color=name, linewidth=1, label=name)
     axes.axhline(COLOR[k], color=name, linewidth=0.5, linestyle=":")
 axes.plot(trail[:, 3], color="black", label="roughness")
 axes.axhline(rough, color="black", linewidth=0.5, linestyle=":")
-axes.set(xlabel="step", title="forget and find", ylim=(0, 1.2))
+axes.set(xlabel="step", title="fit; dotted: the truth", ylim=(0, 1.2))
 axes.legend(loc="upper right", ncols=4, fontsize=8)
 axes = figure.add_subplot(grid[2, 4])
 angle = np.radians(np.linspace(-89, 89, 179))
@@ -163,4 +163,4 @@ axes.semilogy(np.degrees(angle), mine.ggx_lobe(wo, wi, np.full(len(wo), rough)))
 axes.set_title("lobe, light from −45°", fontsize=9)
 axes.set(xlabel="viewer, degrees")
 figure.savefig("reflectance.png", dpi=100)
-print("reflectance.png: chart, derivative by roughness, fit, lobe")
+print("reflectance.png: chart, derivative with respect to roughness, fit, lobe")

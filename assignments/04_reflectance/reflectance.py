@@ -1,9 +1,9 @@
-"""How much light a surface sends where: from Phong's highlight to the material of glTF.
+"""Reflectance models (BRDFs): from Phong's highlight to the glTF material.
 
-Directions are unit vectors in the frame of the surface, whose normal is +z. wo leads to the viewer,
-wi to the light; both leave the surface. A model f(wo, wi), in 1/sr, does not contain the cosine,
-and is 0 unless both directions lie above the surface. N pairs of directions are two arrays (N, 3);
-parameters stand in arrays of N, too, one for each pair.
+Directions are unit vectors in the frame of the surface, whose normal is +z. wo points to the
+viewer, wi to the light. A BRDF f(wo, wi), in 1/sr, does not contain the cosine, and is 0 unless
+both directions lie above the surface. N pairs of directions are two arrays (N, 3); parameters are
+arrays of N, too, one number for each pair.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 04` tells
 how far you are. The other functions are given and stay as they are. All numbers are float64.
@@ -11,7 +11,18 @@ how far you are. The other functions are given and stay as they are. All numbers
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Numbers = Annotated[np.ndarray, "N"]
+Directions = Annotated[np.ndarray, "N 3"]  # unit vectors
+Colors = Annotated[np.ndarray, "N 3"]
+Albedos = Annotated[np.ndarray, "K C"]
+Pairs = Annotated[np.ndarray, "N 2"]
+Model = Callable[[Directions, Directions], Colors]
 
 # Geometry ----------------------------------------------------------------------------------------
 
@@ -28,15 +39,15 @@ def half_vector(wo, wi):
 
 
 def stretched(w, alpha):
-    """Lengths (N,) of directions (N, 3) whose x and y are made alpha (N,) times as long."""
+    """Lengths (N,) of directions (N, 3) with x and y scaled by alpha (N,)."""
     return np.sqrt(alpha**2 * (w[:, 0] ** 2 + w[:, 1] ** 2) + w[:, 2] ** 2)
 
 
 def hemisphere(heights=48, turns=96):
-    """Directions (M, 3) above the surface, and the solid angles (M,) that they speak for.
+    """Directions (M, 3) above the surface, and their quadrature weights (M,), solid angles.
 
-    The integral of g over the hemisphere is about the sum of solid angles times g(directions);
-    closer where g is smooth. The solid angles sum to 2 pi. Nodes crowd near the horizon.
+    The integral of g over the hemisphere is approximately the sum of weights times g(directions),
+    more accurately for smooth g. The weights sum to 2 pi. Nodes are denser near the horizon.
     """
     nodes, weights = np.polynomial.legendre.leggauss(heights)
     root = (nodes + 1) / 2
@@ -55,7 +66,7 @@ def _colored(value, color, wo, wi):
 
 
 def lambert(wo, wi, albedo):
-    """A matte surface: as bright from everywhere (N, 3)."""
+    """A matte surface: equally bright from everywhere (N, 3)."""
     return _colored(np.full(len(wo), 1 / np.pi), albedo, wo, wi)
 
 
@@ -66,12 +77,12 @@ def phong(wo, wi, specular, exponent):
 
 
 def schlick(f0, cos_theta):
-    """What share a facet mirrors, by the angle: f0 straight on, all at a grazing angle."""
+    """Schlick's Fresnel reflectance: f0 at normal incidence, 1 at grazing angles."""
     return f0 + (1 - f0) * (1 - cos_theta) ** 5
 
 
 def burley_diffuse(wo, wi, albedo, roughness):
-    """Burley's matte surface, fitted to measured ones (N, 3); roughness is one number, 0 to 1."""
+    """Burley's diffuse model, fitted to measurements (N, 3); roughness: one number, 0 to 1."""
     wh = half_vector(wo, wi)
     f90 = 0.5 + 2 * roughness * np.sum(wi * wh, axis=1) ** 2
     towards, from_light = (1 + (f90 - 1) * (1 - w[:, 2]) ** 5 for w in (wo, wi))
@@ -79,7 +90,7 @@ def burley_diffuse(wo, wi, albedo, roughness):
 
 
 def cook_torrance(wo, wi, f0, rms_slope, printed=False):
-    """Cook and Torrance's metal: Beckmann's facets in grooves like a V (N, 3).
+    """Cook and Torrance's metal: Beckmann's distribution, V-groove masking (N, 3).
 
     With `printed` the constants are those that the paper of 1982 prints.
     """
@@ -97,16 +108,16 @@ def cook_torrance(wo, wi, f0, rms_slope, printed=False):
 # Your tasks ---------------------------------------------------------------------------------------
 
 
-def furnace(f, cosines):
-    """What share of the light a surface returns in a room that is equally bright everywhere.
+def furnace(f: Model, cosines: Numbers) -> Albedos:
+    """The furnace test: directional albedo, the reflected fraction of uniform light.
 
     Args:
-        f: a function of wo (M, 3) and wi (M, 3) that returns (M, C), a model without the cosine.
-        cosines: (K,), each that of a viewer to the normal, above 0 and up to 1.
+        f: a function of wo (M, 3) and wi (M, 3) that returns (M, C), a BRDF without the cosine.
+        cosines: (K,), between each viewer and the normal, above 0 and up to 1.
 
     Returns:
-        (K, C), the albedo for each viewer, by the directions of `hemisphere()`; handout
-        equation (5). The viewers stand in the plane y = 0, on the side of +x.
+        (K, C), the albedo for each viewer, with the quadrature of `hemisphere()`; handout
+        equation (5). The viewers are in the plane y = 0, on the side of +x.
     """
     # >>> solution 04.1
     wi, solid_angles = hemisphere()
@@ -118,8 +129,8 @@ def furnace(f, cosines):
     # <<< solution
 
 
-def ggx_lobe(wo, wi, roughness):
-    """A surface of tiny mirrors, without Fresnel's factor: D V of the handout.
+def ggx_lobe(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
+    """The GGX lobe of a microfacet model without the Fresnel factor: D V of the handout.
 
     Args:
         wo, wi: (N, 3).
@@ -140,8 +151,8 @@ def ggx_lobe(wo, wi, roughness):
     # <<< solution
 
 
-def ggx_pdf(wo, wi, roughness):
-    """How densely directions wi lie if a facet that wo sees is drawn and mirrors wo.
+def ggx_pdf(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
+    """The density of `sample_ggx` per solid angle.
 
     Args:
         wo, wi: (N, 3).
@@ -162,17 +173,17 @@ def ggx_pdf(wo, wi, roughness):
     # <<< solution
 
 
-def sample_ggx(wo, roughness, u2):
-    """Draw a facet that wo sees, as often as wo sees its kind, and mirror wo at it.
+def sample_ggx(wo: Directions, roughness: Numbers, u2: Pairs) -> Directions:
+    """Sample a visible normal of GGX for wo, and reflect wo at it.
 
     Args:
         wo: (N, 3), above the surface.
         roughness: (N,), 0.045 to 1.
         u2: (N, 2), uniform in [0, 1). Direction n depends on row n of wo, roughness and u2 only;
-            use no random numbers of your own.
+            use no other random numbers.
 
     Returns:
-        (N, 3), unit vectors with the density `ggx_pdf`; some may lead below the surface, where
+        (N, 3), unit vectors with the density `ggx_pdf`; some may lie below the surface, where
         that density is 0. Handout equations (14) to (16).
     """
     # >>> solution 04.4
@@ -189,8 +200,10 @@ def sample_ggx(wo, roughness, u2):
     # <<< solution
 
 
-def gltf(wo, wi, base_color, metalness, roughness):
-    """The material of glTF: a varnished matte ground, a metal, or a blend of both.
+def gltf(
+    wo: Directions, wi: Directions, base_color: Colors, metalness: Numbers, roughness: Numbers
+) -> Colors:
+    """The glTF material: a diffuse base layer under a specular coating, a metal, or a blend.
 
     Args:
         wo, wi: (N, 3).
@@ -205,18 +218,25 @@ def gltf(wo, wi, base_color, metalness, roughness):
     lobe = ggx_lobe(wo, wi, roughness)[:, None]
     cos = np.sum(wo * half_vector(wo, wi), axis=1)[:, None]
     F = schlick(0.04, cos)
-    ground = above(wo, wi)[:, None] * base_color / np.pi
+    diffuse = above(wo, wi)[:, None] * base_color / np.pi
     m = metalness[:, None]
-    return (1 - m) * ((1 - F) * ground + F * lobe) + m * schlick(base_color, cos) * lobe
+    return (1 - m) * ((1 - F) * diffuse + F * lobe) + m * schlick(base_color, cos) * lobe
     # <<< solution
 
 
-def gltf_backward(wo, wi, base_color, metalness, roughness, d_f):
-    """The adjoint of `gltf`: derivatives by its parameters; directions are held fixed.
+def gltf_backward(
+    wo: Directions,
+    wi: Directions,
+    base_color: Colors,
+    metalness: Numbers,
+    roughness: Numbers,
+    d_f: Colors,
+) -> tuple[Colors, Numbers, Numbers]:
+    """The adjoint of `gltf` with respect to its parameters; directions are held fixed.
 
     Args:
         wo, wi, base_color, metalness, roughness: as for `gltf`.
-        d_f: (N, 3), the derivative of some loss by each number that `gltf` returned.
+        d_f: (N, 3), the derivative of some loss with respect to the result of `gltf`.
 
     Returns:
         (d_base_color (N, 3), d_metalness (N,), d_roughness (N,)); handout equations (21) to (25).

@@ -1,12 +1,10 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
 
 def slope_by_radius(reference, x, y):
-    """The derivative of t by the radius of a marched ball."""
+    """The derivative of t with respect to the radius of a sphere-traced ball."""
 
     def ball(places):
         away = np.linalg.norm(places, axis=1)
@@ -17,7 +15,7 @@ def slope_by_radius(reference, x, y):
 
 
 def angle_behind(reference, eta, angle):
-    """The angle with the normal, in degrees, after light has met a surface from inside."""
+    """The angle with the normal, in degrees, after light has hit a surface from inside."""
     a = np.radians(angle)
     direction, normal = np.array([[np.sin(a), 0.0, np.cos(a)]]), np.array([[0.0, 0.0, 1.0]])
     out, _ = reference.refract(direction, normal, float(eta))
@@ -25,6 +23,6 @@ def angle_behind(reference, eta, angle):
 
 
 def nodes_of_tree(reference, things):
-    """How many nodes hold so many things."""
+    """How many nodes hold so many primitives."""
     low = np.random.default_rng(5).random((int(things), 3))
     return float(len(reference.build_bvh(low, low + 0.1)[0]))

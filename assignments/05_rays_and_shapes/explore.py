@@ -2,13 +2,11 @@
 # # Rays and their closest hits
 # Renders three images with your functions: a ring of triangles and the cost of each pixel; a ball
 # of glass over a floor; a sphere-traced ball and its derivative with respect to the radius. Where
-# the C++ core is installed, Embree's results stand beside yours. Never graded. `python explore.py`
-# takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays`
-# (to compare with the core).
+# the C++ core is installed, Embree's results stand beside yours. Never graded.
+# `python explore.py` takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the
+# glass) and `--rays` (to compare with the core).
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 

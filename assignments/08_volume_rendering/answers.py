@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -13,7 +11,7 @@ def weight_of_the_third(reference, a, b, c):
 
 
 def slope_of_one_step(reference, s, dt, c, b):
-    """The derivative of one step's pixel by its extinction."""
+    """The derivative of one step's pixel with respect to its extinction."""
     given = (np.array([[s]]), np.array([[[c]]]), np.array([[dt]]), np.array([b]))
     return float(reference.composite_adjoint(*given, np.ones((1, 1)), np.zeros(1))[0][0, 0])
 

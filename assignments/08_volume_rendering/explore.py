@@ -2,23 +2,20 @@
 # # A ray, a volume, photographs
 # Runs your renderer and its adjoint on a ray, on a small volume, and on photographs of your own,
 # next to the C++ core where that is installed. Never graded. `python explore.py` takes `--steps`,
-# `--thick` (a factor for extinctions), `--size` (pixels of a side) and `--capture DIR`: a folder
-# with `transforms.json` and its pictures. Of these, `--box` says how far the box reaches from the
-# origin, `--voxels` how finely it is divided, and `--views` how many pictures to take.
+# `--thick` (a factor for extinctions), `--size` (pixels per side) and `--capture DIR`: a folder
+# with `transforms.json` and its images. For a capture, `--box` is the extent of the box from the
+# origin, `--voxels` its resolution, and `--views` the number of images to use.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_rendering as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 steps = max(1, int(option("steps", 48)))
 thick = float(option("thick", 1))
@@ -28,9 +25,9 @@ capture = option("capture", "")
 
 # %% [markdown]
 # ## A ray
-# A dark cloud before a bright one, and a background between both. Where does the pixel want more
-# extinction to become brighter? Differences of your own forward pass say whether your derivative
-# can be believed.
+# A dark cloud before a bright one, and a background whose brightness is between both. Where does
+# more extinction make the pixel brighter? Finite differences of your own forward pass check your
+# derivative.
 
 # %%
 ends = np.linspace(0, 6, steps + 1)
@@ -47,12 +44,12 @@ for k in range(steps):
 seen, through = mine.composite(fog, shine, width, sky)
 length = max(np.linalg.norm(differences), 1e-300)
 off = np.linalg.norm(slope[0] - differences) / length
-# The last digit of the pixel, divided by 2e-5: what rounding leaves of it in each difference.
+# Rounding error of the pixel, divided by 2e-5: that of each finite difference.
 rounding = np.finfo(float).eps * np.sqrt(steps) * abs(seen[0, 0]) / 2e-5 / length
 print(f"ray:    pixel {seen[0, 0]:.4f}, T_end {through[0]:.4f}, {steps} steps")
-print(f"        your derivative is {off:.1e} from differences")
+print(f"        your derivative is {off:.1e} from finite differences")
 if rounding > 1e-7:
-    print(f"        (slopes are tiny here: rounding alone puts differences {rounding:.0e} off)")
+    print(f"        (derivatives are tiny here: rounding error alone is {rounding:.0e})")
 figure = Figure(figsize=(9, 7), layout="constrained")
 top, center, bottom = figure.subplots(3, 1, sharex=True)
 top.stairs(fog[0], ends, color="0.4")
@@ -60,18 +57,18 @@ top.set(title="extinction [1/m]: a dark cloud, then a bright one")
 center.stairs(weights[0, :, 0], ends, color="tab:blue")
 center.set(title="weight of each step")
 bottom.axhline(0, color="0.7")
-bottom.plot(middle, slope[0], color="black", label="your derivative by extinction")
-bottom.plot(middle, differences, "o", color="tab:orange", markersize=3, label="differences")
-bottom.set(title="derivative of the pixel by extinction", xlabel="m")
+bottom.plot(middle, slope[0], color="black", label="your derivative")
+bottom.plot(middle, differences, "o", color="tab:orange", markersize=3, label="finite differences")
+bottom.set(title="∂ pixel / ∂ extinction", xlabel="m")
 bottom.legend()
 figure.savefig("ray.png", dpi=100)
 
 
 # %% [markdown]
 # ## A volume
-# A camera looks along -z through a cube of two meters: with parallel rays, so that all of them have
-# the same step, as the core wants it. The truth is a ball within a ring; the guess has no ring, and
-# a ball too many.
+# An orthographic camera looks along -z through a cube of two meters: parallel rays have the same
+# step, which the core requires. The truth is a ball within a ring; the guess has no ring, and an
+# extra ball.
 
 
 # %%
@@ -107,12 +104,12 @@ d_guess, _ = mine.render_adjoint(guess, *rays, d_picture)
 backward = time.perf_counter() - before
 loss = np.sum((picture - photograph) ** 2) / len(picture)
 print(f"volume: {size} x {size} pixels in {forward:.2f} s, the adjoint in {backward:.2f} s")
-print(f"        loss {loss:.4f}; one step against the derivative, extinctions kept above 0, gives:")
+print(f"        loss {loss:.4f}; one step against the gradient, extinctions clamped to 0, gives:")
 for length in (1, 10, 100):
     moved = guess - length * d_guess
     moved[..., 3] = np.maximum(moved[..., 3], 0)
     after = mine.render_rays(moved, *rays)
-    print(f"        step length {length}: {np.sum((after - photograph) ** 2) / len(after):.4f}")
+    print(f"        learning rate {length}: {np.sum((after - photograph) ** 2) / len(after):.4f}")
 
 # %% [markdown]
 # ## The C++ core on the same volume
@@ -135,7 +132,7 @@ def of_the_core():
     batch = base.RayBatch(eyes, looks, np.arange(len(eyes), dtype=np.uint32))
     started = time.perf_counter()
     _, context = field.render(batch, options=base.RenderOptions(), seed=0, step=0)
-    # It leaves the background out: pixel = color + (1 - opacity) background.
+    # The core excludes the background: pixel = color + (1 - opacity) background.
     back = base.Outputs(d_picture, -(d_picture @ backdrop), None)
     gradient = field.render_backward(context, back)["values"]
     return np.asarray(gradient), time.perf_counter() - started
@@ -156,13 +153,13 @@ else:
 
 # %%
 def signed(axes, values, end, title):
-    """A picture of values seen from above: blue negative, red positive."""
+    """An image of values summed along the last axis: blue negative, red positive."""
     axes.imshow(values.sum(axis=2).T[::-1], cmap="RdBu_r", vmin=-end, vmax=end)
     axes.set(title=title, xticks=[], yticks=[])
 
 
 def shown(axes, values, title):
-    """A picture of linear light."""
+    """An image of linear radiance."""
     axes.imshow(np.clip(values, 0, 1).reshape(size, size, -1) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
 
@@ -172,8 +169,8 @@ panels = figure.subplots(1, 4)
 shown(panels[0], photograph, "photograph")
 shown(panels[1], picture, "guess")
 end = max(np.abs(d_guess[..., 3].sum(axis=2)).max(), 1e-300)
-signed(panels[2], d_guess[..., 3], end, "your derivative by extinction")
-panels[2].set_xlabel("blue: add, red: take away")
+signed(panels[2], d_guess[..., 3], end, "your ∂L/∂σ")
+panels[2].set_xlabel("blue: add, red: remove")
 if core_slope is None:
     panels[3].text(0.5, 0.5, "core not installed", ha="center")
     panels[3].set_axis_off()
@@ -186,46 +183,21 @@ print("ray.png, volume.png: look at them")
 # %% [markdown]
 # ## Photographs of your own
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
-# and an angle of view or a focal length in pixels. In a box full of thin gray fog, where do the
-# photographs want it denser, where thinner? Their background counts as the mean of their border.
+# and a field of view or a focal length in pixels. For a box of thin gray fog, the sign of the
+# gradient tells where the photographs need more or less extinction. The background is the mean of
+# the border of a photograph.
 
 
 # %%
-def views(folder):
-    """(origins, directions, colors) of all pixels of the pictures, made small."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    frames = told["frames"]
-    some = max(1, len(frames) // max(1, int(option("views", 8))))
-    for frame in frames[::some]:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        focal = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
-        small = (size, max(1, round(size * tall / wide)))
-        colors = np.asarray(image.convert("RGBA").resize(small), np.float64) / 255
-        colors = colors[..., :3] ** 2.2 * colors[..., 3:]
-        v, u = np.meshgrid(np.arange(small[1]) + 0.5, np.arange(size) + 0.5, indexing="ij")
-        flat = [(u / size - 0.5) / focal, -(v - small[1] / 2) / size / focal, -np.ones(u.shape)]
-        pose = np.array(frame["transform_matrix"], np.float64)
-        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
-        yield np.tile(pose[:3, 3], (len(aim), 1)), aim, colors
-
-
 if capture:
     reach, n = float(option("box", 1.0)), int(option("voxels", 32))
     corner = np.full(3, reach)
     gray = np.full((n, n, n, 4), 0.5)
     gray[..., 3] = 0.1 * thick / reach
     total, count = np.zeros(gray.shape), 0
-    for places, aims, colors in views(Path(capture)):
-        rim = np.concatenate([colors[0], colors[-1], colors[:, 0], colors[:, -1]])
-        given = (-corner, corner, places, aims, steps, rim.mean(axis=0))
-        wrong = mine.render_rays(gray, *given) - colors.reshape(-1, 3)
+    for photo in read_capture(Path(capture), size, option("views", 8)):
+        given = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
+        wrong = mine.render_rays(gray, *given) - photo.colors.reshape(-1, 3)
         total += mine.render_adjoint(gray, *given, 2 * wrong / len(wrong))[0]
         count += 1
     titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")
@@ -234,4 +206,4 @@ if capture:
         flat = np.moveaxis(total[..., 3], axis, 2)
         signed(axes, flat, max(np.abs(flat.sum(axis=2)).max(), 1e-300), titles[axis])
     figure.savefig("capture.png", dpi=100)
-    print(f"capture.png: what {count} photographs want of gray fog; blue is more, red is less")
+    print(f"capture.png: gradient of {count} photographs for gray fog; blue: more, red: less")

@@ -1,8 +1,8 @@
-"""Volume rendering: light through a grid of glowing, absorbing voxels, and its adjoint.
+"""Volume rendering of a grid of emitting, absorbing voxels, and its adjoint.
 
 A volume is an array (X, Y, Z, 4) between the corners `low` and `high` of a box; channels are r, g,
-b and sigma, the extinction in 1/m, never negative. Values sit in the middle of their voxels. A ray
-is origin + t * direction, t >= 0; its direction need not have length 1. R rays, S samples each, all
+b and sigma, the extinction in 1/m, never negative. Values belong to voxel centers. A ray is
+origin + t * direction, t >= 0; its direction need not have length 1. R rays, S samples each, all
 numbers float64.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 08` tells how
@@ -11,17 +11,34 @@ far you are. `ray_samples` and `render_rays` are given, and work once yours do.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+# Arrays and their shapes; float64 where nothing else is said.
+Steps = Annotated[np.ndarray, "R S"]
+StepColors = Annotated[np.ndarray, "R S C"]
+PerRay = Annotated[np.ndarray, "R"]
+Pixels = Annotated[np.ndarray, "R C"]
+Color = Annotated[np.ndarray, "C"]
+Vectors = Annotated[np.ndarray, "R 3"]
+Corner = Annotated[np.ndarray, "3"]
+Grid = Annotated[np.ndarray, "X Y Z C"]
+Places = Annotated[np.ndarray, "N 3"]
+Samples = Annotated[np.ndarray, "N C"]
+Shape = tuple[int, int, int]  # (X, Y, Z)
 
-def composite(sigma, color, dt, background):
-    """What is seen along rays that are cut into steps of constant extinction and color.
+
+def composite(
+    sigma: Steps, color: StepColors, dt: Steps, background: Color
+) -> tuple[Pixels, PerRay]:
+    """Emission and absorption along rays, in steps of constant extinction and color.
 
     Args:
         sigma: (R, S), the extinction in each step, 0 or more, nearest step first; 1/m.
-        color: (R, S, C), the color of each step; any C from 1 upwards.
+        color: (R, S, C), the color of each step; C is 1 or more.
         dt: (R, S), the length of each step, 0 or more; m. Steps may differ.
-        background: (C,), the color behind everything, the same for all rays.
+        background: (C,), the color behind all steps, the same for all rays.
 
     Returns:
         (pixel, T_end): (R, C), and (R,) the transmittance of the whole ray; handout equations (4)
@@ -37,17 +54,19 @@ def composite(sigma, color, dt, background):
     # <<< solution
 
 
-def composite_adjoint(sigma, color, dt, background, d_pixel, d_T_end):
-    """The adjoint of `composite`: from derivatives by its results to derivatives by its inputs.
+def composite_adjoint(
+    sigma: Steps, color: StepColors, dt: Steps, background: Color, d_pixel: Pixels, d_T_end: PerRay
+) -> tuple[Steps, StepColors, Color]:
+    """The adjoint (backward pass) of `composite`.
 
     Args:
-        sigma, color, dt, background: as `composite` had them.
-        d_pixel: (R, C), the derivative of some loss by each pixel.
-        d_T_end: (R,), the derivative of that loss by each T_end.
+        sigma, color, dt, background: as for `composite`.
+        d_pixel: (R, C), the derivative of some loss with respect to each pixel.
+        d_T_end: (R,), the derivative of that loss with respect to each T_end.
 
     Returns:
-        (d_sigma, d_color, d_background): (R, S), (R, S, C) and (C,), the derivative of that loss by
-        each; handout section 2.
+        (d_sigma, d_color, d_background): (R, S), (R, S, C) and (C,), the derivatives of that loss
+        with respect to each input; handout section 2.
     """
     # >>> solution 08.2
     pixel, end = composite(sigma, color, dt, background)
@@ -66,8 +85,10 @@ def composite_adjoint(sigma, color, dt, background, d_pixel, d_T_end):
     # <<< solution
 
 
-def ray_box(low, high, origins, directions):
-    """Where rays enter and leave a box with edges along the axes.
+def ray_box(
+    low: Corner, high: Corner, origins: Vectors, directions: Vectors
+) -> tuple[PerRay, PerRay]:
+    """Entry and exit of rays through an axis-aligned box.
 
     Args:
         low, high: (3,), two opposite corners, low < high on each axis; faces belong to the box.
@@ -75,9 +96,8 @@ def ray_box(low, high, origins, directions):
         directions: (R, 3), of any length above zero; single components may be zero.
 
     Returns:
-        (t_near, t_far): (R,) each, in units of the direction. Where a ray hits the box:
-        0 <= t_near < t_far; where no stretch of the box lies before it, both are 0. Handout
-        equations (13) to (15).
+        (t_near, t_far): (R,) each, in lengths of the direction. Where a ray hits the box:
+        0 <= t_near < t_far; where it misses, both are 0. Handout equations (13) to (15).
     """
     # >>> solution 08.3
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -94,12 +114,12 @@ def ray_box(low, high, origins, directions):
     # <<< solution
 
 
-def trilinear(grid, u):
-    """Values of a grid at given places.
+def trilinear(grid: Grid, u: Places) -> Samples:
+    """Trilinear interpolation of a grid.
 
     Args:
-        grid: (X, Y, Z, C); any X, Y, Z, C from 1 upwards.
-        u: (N, 3), the places, from 0 to 1 across the box on each axis; the border holds beyond.
+        grid: (X, Y, Z, C), each 1 or more.
+        u: (N, 3), points, 0 to 1 across the box on each axis; beyond, border values are repeated.
 
     Returns:
         (N, C); handout equations (16) to (18).
@@ -119,16 +139,16 @@ def trilinear(grid, u):
     # <<< solution
 
 
-def trilinear_adjoint(shape, u, g):
-    """The transpose of `trilinear`: each sample's number goes back to its eight voxels.
+def trilinear_adjoint(shape: Shape, u: Places, g: Samples) -> Grid:
+    """The adjoint of `trilinear`: scatters the derivative of each sample to its eight voxels.
 
     Args:
-        shape: (X, Y, Z), a tuple or a list: take it apart, (*shape, 1) works for both.
-        u: (N, 3), the places; the same place may occur many times.
-        g: (N, C), the derivative of some loss by each sample.
+        shape: (X, Y, Z), a tuple or a list: (*shape, 1) works for both.
+        u: (N, 3), points; the same point may occur many times.
+        g: (N, C), the derivative of some loss with respect to each sample.
 
     Returns:
-        (X, Y, Z, C), the derivative of that loss by each voxel.
+        (X, Y, Z, C), the derivative of that loss with respect to each voxel.
     """
     # >>> solution 08.5
     sizes = np.array(shape)
@@ -146,11 +166,11 @@ def trilinear_adjoint(shape, u, g):
 
 
 def ray_samples(low, high, origins, directions, n):
-    """Given: places in the middle of n equal steps through the box, and the steps' lengths.
+    """Given: midpoints of n equal steps through the box, and the lengths of the steps.
 
     Returns:
-        (u, dt): (R, n, 3), places from 0 to 1 across the box; (R, n), in m whatever the length of
-        the directions.
+        (u, dt): (R, n, 3), points, 0 to 1 across the box; (R, n), in m for directions of any
+        length.
     """
     t_near, t_far = ray_box(low, high, origins, directions)
     step = (t_far - t_near) / n
@@ -161,22 +181,31 @@ def ray_samples(low, high, origins, directions, n):
 
 
 def render_rays(grid, low, high, origins, directions, n, background):
-    """Given: the pixels (R, 3) that rays see through a volume in front of a background (3,)."""
+    """Given: the pixels (R, 3) of rays through a volume in front of a background (3,)."""
     u, dt = ray_samples(low, high, origins, directions, n)
     samples = trilinear(grid, u.reshape(-1, 3)).reshape(len(origins), n, 4)
     return composite(samples[:, :, 3], samples[:, :, :3], dt, background)[0]
 
 
-def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):
-    """The adjoint of `render_rays` by the volume and the background.
+def render_adjoint(
+    grid: Grid,
+    low: Corner,
+    high: Corner,
+    origins: Vectors,
+    directions: Vectors,
+    n: int,
+    background: Color,
+    d_pixel: Pixels,
+) -> tuple[Grid, Color]:
+    """The adjoint of `render_rays` with respect to the volume and the background.
 
     Args:
-        grid, low, high, origins, directions, n, background: as `render_rays` had them.
-        d_pixel: (R, 3), the derivative of some loss by each pixel.
+        grid, low, high, origins, directions, n, background: as for `render_rays`.
+        d_pixel: (R, 3), the derivative of some loss with respect to each pixel.
 
     Returns:
-        (d_grid, d_background): (X, Y, Z, 4) and (3,), the derivative of that loss by each; handout
-        section 6.
+        (d_grid, d_background): (X, Y, Z, 4) and (3,), the derivatives of that loss with respect to
+        each; handout section 6.
     """
     # >>> solution 08.6
     places, lengths = ray_samples(low, high, origins, directions, n)

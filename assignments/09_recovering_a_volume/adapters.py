@@ -1,10 +1,8 @@
 """Between the checks and your `volume_recovery.py`: what needs several calls, or a generator.
 
-Runs beside your file; nothing here is to be changed or handed in. Your renderer is asked through
-`volume_recovery`, where the grader may put its own in the place of a wrong one.
+Runs beside your file; do not change or submit it. Your renderer is asked through
+`volume_recovery`, where the grader may put its own instead of a wrong one.
 """
-
-from __future__ import annotations
 
 import numpy as np
 import volume_recovery as yours
@@ -25,7 +23,7 @@ def loss_of_views(grid, views):
 
 
 def gradient_of_views(grid, views):
-    """(loss, derivative by each number of the volume), without total variation."""
+    """(loss, derivative with respect to each number of the volume), without total variation."""
     asked, truth = _whole(views)
     value, cotangent = yours.mse_and_cotangent(yours.render_rays(grid, *asked), truth)
     return value, yours.render_adjoint(grid, *asked, cotangent)[0]

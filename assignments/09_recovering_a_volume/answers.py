@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 

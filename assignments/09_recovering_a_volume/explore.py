@@ -1,24 +1,21 @@
 # %% [markdown]
 # # A scene from its photographs
-# Photographs a scene drawn by formulas, shows what the photographs want of fog, and recovers the
-# scene with your functions, next to the C++ core where that is installed. Never graded. `python
-# explore.py` takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total
-# variation) and `--capture DIR`: a folder with `transforms.json` and its pictures. Of these,
-# `--box` says how far the box reaches from the origin.
+# Photographs a scene defined by formulas, shows the gradient at fog, and recovers the scene with
+# your functions, next to the C++ core where that is installed. Never graded. `python explore.py`
+# takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total variation) and
+# `--capture DIR`: a folder with `transforms.json` and its images. For a capture, `--box` is the
+# extent of the box from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_recovery as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, look_at_origin, read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
 steps, capture = option("steps", 60), option("capture", "")
@@ -48,25 +45,13 @@ def scene(n):
     return grid
 
 
-def camera(place):
-    """The pose of a camera at a place that looks at the origin; y is down."""
-    z = -place / np.linalg.norm(place)
-    right = np.cross(z, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = np.stack([right, np.cross(z, right), z], axis=1), place
-    return matrix
-
-
 def photographs(grid, number, size, turn=0.0):
     """Views of a volume by your own renderer."""
-    height = 1 - (np.arange(number) + 0.5) * 2 / number
-    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
-    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    places = 3.2 * all_around(number, turn, up=1)
     views = {
         "pictures": np.zeros((number, size, size, 3)),
         "focal": 1.25 * size,
-        "world_from_camera": np.stack([camera(place) for place in places]),
+        "world_from_camera": np.stack([look_at_origin(place) for place in places]),
         "low": np.full(3, -1.0),
         "high": np.full(3, 1.0),
         "background": np.array([0.04, 0.05, 0.08]),
@@ -76,7 +61,7 @@ def photographs(grid, number, size, turn=0.0):
 
 
 def shown(grid, views, samples=32):
-    """All pictures of a volume."""
+    """All images of a volume."""
     shape = views["pictures"].shape
     origins, directions, _ = mine.ray_batch(views, np.arange(int(np.prod(shape[:3]))))
     box = views["low"], views["high"]
@@ -85,7 +70,7 @@ def shown(grid, views, samples=32):
 
 
 def gradient(grid, views):
-    """The derivative of the loss of all photographs by each number of a volume."""
+    """Gradient of the loss of all photographs with respect to a volume."""
     everything = np.arange(views["pictures"][..., 0].size)
     origins, directions, truth = mine.ray_batch(views, everything)
     asked = (views["low"], views["high"], origins, directions, mine.SAMPLES, views["background"])
@@ -111,27 +96,29 @@ truth = scene(24)
 views, unseen = photographs(truth, count, pixels), photographs(truth, 4, pixels, 1.0)
 fog = mine.fog((voxels,) * 3)
 print(f"scene:  {count} photographs of {pixels} x {pixels}, a volume of {voxels}^3")
-print(f"        fog has {mine.psnr(shown(fog, unseen), unseen['pictures']):.1f} dB on new views")
+print(
+    f"        fog has {mine.psnr(shown(fog, unseen), unseen['pictures']):.1f} dB on held-out views"
+)
 
 # %% [markdown]
 # ## Your signs, your fit
 
 # %%
 slope, signs = gradient(fog, views)[..., 3], mine.gradient_sign_map(fog, views)
-print(f"signs:  {np.mean(signs < 0):.0%} of all voxels want more, {np.mean(signs > 0):.0%} less")
+print(f"signs:  {np.mean(signs < 0):.0%} of all voxels negative, {np.mean(signs > 0):.0%} positive")
 found, losses, seconds = recover(views, voxels, steps)
 own = mine.psnr(shown(found, views), views["pictures"])
 new = mine.psnr(shown(found, unseen), unseen["pictures"])
 print(
     f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
-    f"{new:.1f} dB on new views"
+    f"{new:.1f} dB on held-out views"
 )
 
 # %% [markdown]
 # ## The C++ core
-# Its renderer and its adjoint in the place of yours. It steps along a ray by equal lengths, where
-# 08 takes equal numbers of steps: the derivatives differ as two quadratures do, the less the finer
-# the steps. They are compared with a hundred and more on each ray.
+# Its renderer and its adjoint instead of yours. Its steps have equal lengths, where 08 takes equal
+# numbers of steps: the derivatives differ as two quadratures do, less with finer steps. They are
+# compared with a hundred steps per ray or more.
 
 
 # %%
@@ -175,7 +162,7 @@ FINE = 160
 
 
 def finely(grid, views):
-    """The derivative by extinction with many samples on each ray."""
+    """The derivative with respect to extinction with many samples per ray."""
     samples, mine.SAMPLES = mine.SAMPLES, FINE
     slope = gradient(grid, views)[..., 3]
     mine.SAMPLES = samples
@@ -199,17 +186,17 @@ else:
     score = mine.psnr(shown(core, unseen), unseen["pictures"])
     print(
         f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
-        f"{score:.1f} dB on new views in {core_seconds:.1f} s"
+        f"{score:.1f} dB on held-out views in {core_seconds:.1f} s"
     )
 
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 
 # %%
 def signed(axes, values, title):
-    """The middle slice of a volume: blue negative (add), red positive (take away); roots."""
+    """The middle slice of a volume: blue negative (add), red positive (remove); roots."""
     flat = values[:, :, values.shape[2] // 2].T
     root = np.sign(flat) * np.sqrt(np.abs(flat) / max(np.abs(flat).max(), 1e-300))
     axes.imshow(root, cmap="RdBu_r", vmin=-1, vmax=1, origin="lower")
@@ -217,7 +204,7 @@ def signed(axes, values, title):
 
 
 def light(axes, picture, title):
-    """A picture of linear light."""
+    """An image of linear radiance."""
     axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
 
@@ -244,48 +231,28 @@ signed(panels[1, 0], slope, "your derivative by σ, from fog")
 signed(panels[1, 2], signs, "your sign map, from fog")
 signed(panels[1, 3], gradient(found, views)[..., 3], "your derivative after the fit")
 figure.savefig("recovery.png", dpi=100)
-print("recovery.png: a new view, your derivative, what was recovered")
+print("recovery.png: a held-out view, your derivative, the recovered volume")
 
 
 # %% [markdown]
 # ## Photographs of your own
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
-# and an angle of view or a focal length in pixels. The background counts as the mean of the
-# pictures' borders. The last photograph is kept back.
+# and a field of view or a focal length in pixels. The background is the mean of the borders of the
+# images. The last photograph is held out.
 
 
 # %%
 def taken(folder, size):
     """Views of a capture, its pictures made small."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    frames = told["frames"]
-    frames = frames[:: max(1, len(frames) // max(2, count))]
-    pictures, poses = [], []
-    for frame in frames:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        given = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = given / told.get("w", wide) if given else 0.5 / np.tan(angle / 2)
-        small = image.convert("RGBA").resize((size, max(1, round(size * tall / wide))))
-        values = np.asarray(small, np.float64) / 255
-        pictures.append(values[..., :3] ** 2.2 * values[..., 3:])
-        # From y up and -z forward to y down and z forward.
-        poses.append(np.array(frame["transform_matrix"], np.float64) @ np.diag([1.0, -1, -1, 1]))
-    pictures = np.stack(pictures)
-    rims = [pictures[:, 0], pictures[:, -1], pictures[:, :, 0], pictures[:, :, -1]]
+    photos = list(read_capture(folder, size, max(2, count)))
     reach = np.full(3, option("box", 1.0))
     return {
-        "pictures": pictures,
-        "world_from_camera": np.stack(poses),
-        "focal": focal * size,
+        "pictures": np.stack([photo.colors for photo in photos]),
+        "world_from_camera": np.stack([photo.world_from_camera for photo in photos]),
+        "focal": photos[0].focal,
         "low": -reach,
         "high": reach,
-        "background": np.concatenate([rim.reshape(-1, 3) for rim in rims]).mean(axis=0),
+        "background": np.concatenate([photo.border for photo in photos]).mean(axis=0),
     }
 
 
@@ -296,7 +263,7 @@ if capture:
     kept_back, guess = last["pictures"], shown(volume, last)
     print(
         f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
-        f"{mine.psnr(guess, kept_back):.1f} dB on the one kept back"
+        f"{mine.psnr(guess, kept_back):.1f} dB on the held-out one"
     )
     figure = Figure(figsize=(13, 3.4), layout="constrained")
     panels = figure.subplots(1, 5)
@@ -306,4 +273,4 @@ if capture:
     light(panels[3], guess[0], "recovered")
     signed(panels[4], gradient(mine.fog(volume.shape[:3]), train)[..., 3], "derivative, from fog")
     figure.savefig("capture.png", dpi=100)
-    print("capture.png: your photographs, what was recovered, what they wanted of fog")
+    print("capture.png: your photographs, the recovered volume, the gradient at fog")

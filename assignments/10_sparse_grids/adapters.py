@@ -1,10 +1,8 @@
 """Between the checks and your `sparse_grids.py`: calls in a row.
 
-Runs beside your file; nothing here is to be changed or handed in. Arrays reach your functions as
-copies. Whether one was written to shows in what a second call makes of the same array.
+Runs beside your file; do not change or submit it. Arrays reach your functions as
+copies. A second call shows whether one was changed.
 """
-
-from __future__ import annotations
 
 import numpy as np
 import sparse_grids as grids
@@ -29,8 +27,7 @@ def gradient(n, voxels, values, rays, target):
 def next_start(n, voxels, values, rays, threshold, grow):
     """(voxels, rows) that follow on these: what `prune_and_dilate` makes of their shares.
 
-    rows are those that the new voxels had before, -1 for new ones; as lists, for nobody knows how
-    many there are.
+    rows are the old rows of the new voxels, -1 for new ones; lists, of unknown length.
     """
     table = _table(voxels)
     row, share = grids.shares(values, grids.march(n, voxels, table, rays))
@@ -39,12 +36,12 @@ def next_start(n, voxels, values, rays, threshold, grow):
 
 
 def fit_again(*given):
-    """What `fit_sparse` returns for the same arrays the second time."""
+    """Result of `fit_sparse` for the same arrays the second time."""
     grids.fit_sparse(*given)
     return grids.fit_sparse(*given)
 
 
 def insert_after(table, first, voxels, rows):
-    """What `voxel_hash_insert` returns for a table that other voxels were inserted in before."""
+    """Result of `voxel_hash_insert` for a table that other voxels were inserted in before."""
     grids.voxel_hash_insert(table, first, rows)
     return grids.voxel_hash_insert(table, voxels, rows)

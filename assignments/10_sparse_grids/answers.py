@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -14,7 +12,7 @@ def nodes_of_cells(reference, n, k):
 
 
 def slope_of_the_gap(reference, a, c):
-    """The derivative of the warm-up's loss by the extinction of the step that is not there."""
+    """Derivative of the loss of the warm-up with respect to the extinction of the absent step."""
     values = np.array([[0.2] * 3 + [a], [c] * 3 + [0.0], [0.8] * 3 + [2.0]])
     row = np.array([[0, 1, 2]])
     samples = np.ones((1, 3), bool), np.array([0.5]), row, np.ones((1, 3))

@@ -1,17 +1,14 @@
 # %% [markdown]
 # # A sparse scene, recovered
-# Photographs a scene drawn by formulas and recovers it with your functions three ways: with all
-# voxels, pruned early, and pruned and grown. Where the C++ core is installed, its derivative and
-# its own recovery stand beside yours, and your voxels go through an OpenVDB file. Never graded.
-# `python explore.py` takes `--voxels` (of a side, a power of two), `--steps` and `--rounds`,
-# `--threshold`, `--views`, `--size` (pixels of a side), and `--capture DIR`: a folder with
-# `transforms.json` and its pictures, of a scene that reaches `--box` from the origin.
+# Photographs a scene defined by formulas and recovers it with your functions in three ways: with
+# all voxels, pruned early, and pruned and dilated. Where the C++ core is installed, its derivative
+# and its own recovery stand beside yours, and your voxels are written to an OpenVDB file and read
+# back. Never graded. `python explore.py` takes `--voxels` (per side, a power of two), `--steps` and
+# `--rounds`, `--threshold`, `--views`, `--size` (pixels per side), and `--capture DIR`: a folder
+# with `transforms.json` and its images, of a scene that extends `--box` from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import tempfile
 import time
 from pathlib import Path
@@ -19,8 +16,8 @@ from pathlib import Path
 import numpy as np
 import sparse_grids as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, rays_to_origin, read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 n, rounds, steps = option("voxels", 16), option("rounds", 8), option("steps", 5)
 threshold, views, size = option("threshold", 0.05), option("views", 16), option("size", 10)
@@ -33,7 +30,7 @@ capture = option("capture", "")
 
 # %%
 def scene(n):
-    """(voxels, values) of those voxels that hold something."""
+    """(voxels, values) of the voxels that are not empty."""
     every = np.argwhere(np.ones((n, n, n), bool))
     x = (every + 0.5) / n * 2 - 1
     around = np.hypot(x[:, 0] + 0.2, x[:, 1] + 0.1)
@@ -52,19 +49,7 @@ def scene(n):
 
 def cameras(count, size, turned=0.0):
     """Rays (2, count size^2, 3) of cameras all around the scene."""
-    height = 1 - (np.arange(count) + 0.5) * 2 / count
-    phi = np.arange(count) * 2.399963 + turned
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.38
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(3.2 * place, (size**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays_to_origin(3.2 * all_around(count, turned), size, 0.38)
 
 
 def table_of(voxels):
@@ -88,9 +73,9 @@ target, hidden = seen(2 * n, *truth, rays), seen(2 * n, *truth, unseen)
 print(f"scene: {views} photographs of {size} x {size}, all voxels {n**3}")
 
 # %% [markdown]
-# ## What it costs
-# Bytes of the scene itself, in four forms. The dense form holds no structure; the sparse one needs
-# the octree, the table and the values together.
+# ## Memory
+# Bytes of the scene itself, in four forms. The dense form needs no other structure; the sparse one
+# needs the octree, the table and the values together.
 
 # %%
 voxels, values = scene(n)
@@ -101,7 +86,7 @@ dense, *sparse = mine.active_stats(n, tree, table_of(voxels), values)
 leaves = int((tree <= 0).sum())
 print(f"bytes:  dense {dense}; octree {sparse[0]}, table {sparse[1]}, values {sparse[2]}")
 wanted, *_ = mine.march(n, voxels, table_of(voxels), unseen)
-print(f"samples read: {wanted.mean():.0%} of all; octree: {len(tree)} nodes, {leaves} leaves")
+print(f"evaluated samples: {wanted.mean():.0%} of all; octree: {len(tree)} nodes, {leaves} leaves")
 
 # %% [markdown]
 # ## Three recoveries
@@ -112,7 +97,7 @@ start = np.tile(mine.START, (len(every), 1))
 plans = {
     "all voxels": (1, rounds * steps, 0.0, 0),
     "pruned": (rounds, steps, threshold, 0),
-    "pruned and grown": (rounds, steps, threshold, 1),
+    "pruned and dilated": (rounds, steps, threshold, 1),
 }
 found = {}
 for name, plan in plans.items():
@@ -121,13 +106,13 @@ for name, plan in plans.items():
     seconds = time.perf_counter() - before
     print(
         f"{name}: {len(found[name][0])} voxels, {seconds:.1f} s, "
-        f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on new views"
+        f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on held-out views"
     )
 
 # %% [markdown]
 # ## Your derivative
-# A guess that lacks the ring and the pole, and the derivative by extinction that its photographs
-# give: of the voxels that exist, and of all of them, had they the color of START.
+# A guess that lacks the ring and the pole, and the derivative of its loss with respect to
+# extinction: of the voxels that exist, and of all voxels, new ones with the color of START.
 
 # %%
 across = (np.arange(32) + 0.5) / 16 - 1
@@ -145,12 +130,12 @@ _, told = mine.loss_and_grad(filled, mine.march(n, every, table_of(every), paral
 
 # %% [markdown]
 # ## The C++ core
-# The same sparse grid as a field of the core: spherical harmonics of degree 0, nothing activated.
+# The same sparse grid as a field of the core: spherical harmonics of degree 0, no activations.
 
 
 # %%
 def core_field(n, voxels, values):
-    """A field of the core with these voxels, and the rows that they have there."""
+    """A field of the core with these voxels, and their rows there."""
     fields = importlib.import_module("photograd.fields.sparse_sh")
     marches = importlib.import_module("photograd.fields.march")
     active = importlib.import_module("photograd.fields.active_voxels")
@@ -186,7 +171,7 @@ def core_loss_and_grad(n, voxels, values, rays, target):
 
 
 def core_fit(n, voxels, numbers, rays, target, rounds, steps, threshold):
-    """The recovery with the core's derivatives and shares, and its way to prune and grow."""
+    """The recovery with the derivatives, shares, pruning and dilation of the core."""
     existing = importlib.import_module("photograd.fields.active_voxels")
     for left in reversed(range(rounds)):
         optimizer = mine.Adam()
@@ -244,24 +229,24 @@ else:
     )
     its = octrees.Octree.from_dense(full[..., None]).statistics().leaves
     print(f"core: its octree has {its} leaves, yours {leaves}")
-    again = through_openvdb(n, *found["pruned and grown"][:2])
-    same = np.array_equal(again, found["pruned and grown"][1].astype(np.float32))
-    print("values as they were" if same else "values differ")
+    again = through_openvdb(n, *found["pruned and dilated"][:2])
+    same = np.array_equal(again, found["pruned and dilated"][1].astype(np.float32))
+    print("values are the same" if same else "values differ")
     before = time.perf_counter()
     core_found = core_fit(n, every, start, rays, target, rounds, steps, threshold)
     print(
-        f"core, pruned and grown: {len(core_found[0])} voxels, "
+        f"core, pruned and dilated: {len(core_found[0])} voxels, "
         f"{time.perf_counter() - before:.1f} s, "
-        f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on new views"
+        f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on held-out views"
     )
 
 # %% [markdown]
-# ## Pictures
+# ## Figures
 
 
 # %%
 def shown(axes, colors, title):
-    """A square picture of linear light."""
+    """A square image of linear radiance."""
     side = round(len(colors) ** 0.5)
     axes.imshow(np.clip(colors, 0, 1).reshape(side, side, 3) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
@@ -303,36 +288,19 @@ print("sparse.png: look at it")
 # %% [markdown]
 # ## Photographs of your own
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
-# and an angle of view or a focal length in pixels. What is transparent counts as black.
+# and a field of view or a focal length in pixels. Transparent pixels count as black.
 
 
 # %%
 def photographs(folder, reach):
     """Rays (2, R, 3), scaled so that the scene fills the cube, colors (R, 3), picture sizes."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    origins, directions, colors, sizes = [], [], [], []
-    for frame in told["frames"][:: max(1, len(told["frames"]) // max(1, views))]:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        focal = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
-        a, b = 2 * size, max(1, round(2 * size * tall / wide))
-        light = np.asarray(image.convert("RGBA").resize((a, b)), np.float64) / 255
-        colors.append((light[..., :3] ** 2.2 * light[..., 3:]).reshape(-1, 3))
-        v, u = np.meshgrid(np.arange(b) + 0.5, np.arange(a) + 0.5, indexing="ij")
-        flat = [(u / a - 0.5) / focal, -(v - b / 2) / a / focal, -np.ones(u.shape)]
-        pose = np.array(frame["transform_matrix"], np.float64)
-        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
-        directions.append(aim / np.linalg.norm(aim, axis=1, keepdims=True))
-        origins.append(np.tile(pose[:3, 3] / reach, (len(aim), 1)))
-        sizes.append((b, a))
-    rays = np.stack([np.concatenate(origins), np.concatenate(directions)])
-    return rays, np.concatenate(colors), sizes
+    photos = list(read_capture(folder, 2 * size, views))
+    origins, directions = (
+        np.concatenate(each) for each in zip(*(p.rays() for p in photos), strict=True)
+    )
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    colors = np.concatenate([photo.colors.reshape(-1, 3) for photo in photos])
+    return np.stack([origins / reach, directions]), colors, [p.colors.shape[:2] for p in photos]
 
 
 if capture:
@@ -356,4 +324,4 @@ if capture:
             axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
             axes.set(xticks=[], yticks=[], title=title)
     figure.savefig("capture.png", dpi=90)
-    print("capture.png: photographs, and the same views of what was recovered")
+    print("capture.png: photographs, and the same views of the recovered grid")

@@ -1,12 +1,12 @@
-"""Volumes of which only the part that matters is stored: octree, voxel hash, skipping, growing.
+"""Sparse volumes: octree, voxel hash table, empty-space skipping, pruning and dilation.
 
-A volume fills the cube from -1 to 1 in x, y and z with n x n x n voxels, n a power of two. Places
-are given in *cells*: (0, 0, 0) is one corner of the cube and (n, n, n) the opposite one; cell
-(i, j, k) reaches from i to i + 1 along x and so on, and voxel (i, j, k) has its value in the middle
-of it. Rays, which `march` and `fit_sparse` take, are in the units of the cube instead. A *sparse
+A volume fills the cube from -1 to 1 in x, y and z with n x n x n voxels, n a power of two. Points
+are measured in *cells*: (0, 0, 0) is one corner of the cube and (n, n, n) the opposite one; cell
+(i, j, k) extends from i to i + 1 along x and so on, and voxel (i, j, k) has its value at the center
+of it. Rays, arguments of `march` and `fit_sparse`, are in the units of the cube instead. A *sparse
 grid* is a list of active voxels (V, 3), their values (V, 4) with channels r, g, b and sigma, the
-extinction for each unit of length, and a hash table that tells the row of a voxel. What is not in
-the list is empty: all four numbers are 0 there, outside the cube as well.
+extinction per unit of length, and a hash table that maps a voxel to its row. Absent voxels are
+empty: all four numbers are 0 there, outside the cube as well.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 10` tells how
 far you are. The other functions are given and stay as they are. Values are float64, indices int64.
@@ -14,14 +14,33 @@ far you are. The other functions are given and stay as they are. Values are floa
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
 
+# Arrays and their shapes; float64 where nothing else is said.
+Cube = Annotated[np.ndarray, "n n n"]  # bool
+Tree = Annotated[np.ndarray, "N"]  # int64
+Vectors = Annotated[np.ndarray, "R 3"]
+Voxels = Annotated[np.ndarray, "V 3"]  # int64
+Values = Annotated[np.ndarray, "V C"]
+Table = Annotated[np.ndarray, "slots 4"]  # int64
+Rows = Annotated[np.ndarray, "M"]  # int64
+Corners = Annotated[np.ndarray, "8 M"]  # int64 rows, or weights
+Samples = Annotated[np.ndarray, "M C"]
+Colors = Annotated[np.ndarray, "R 3"]
+Wanted = Annotated[np.ndarray, "R count"]  # bool
+Losses = Annotated[np.ndarray, "rounds*steps"]
+Rays = Annotated[np.ndarray, "2 R 3"]  # origins, directions
+Leaf = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+
 EMPTY, FULL = 0, -1  # leaves of an octree
-START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: gray, and hardly there
+START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: gray, with little extinction
 RATES = np.array([0.05, 0.05, 0.05, 0.4])  # of Adam, by channel
 
 
-def octree_from_dense(full):
+def octree_from_dense(full: Cube) -> Tree:
     """The octree of a cube of cells that are full or empty.
 
     Args:
@@ -29,9 +48,9 @@ def octree_from_dense(full):
 
     Returns:
         tree (N,) of int64. Node 0 is the whole cube. tree[node] is EMPTY or FULL for a leaf, a
-        cube of equal cells that is as large as can be; otherwise it is the number of the first of
-        the node's eight children, which follow one another: child 4 a + 2 b + c, where a, b and c
-        are 1 in the upper half along x, y and z. Handout equations (4) to (6).
+        cube of equal cells that is as large as possible; otherwise it is the index of the first of
+        eight consecutive children: child 4 a + 2 b + c, where a, b and c are 1 in the upper half
+        along x, y and z. Handout equations (4) to (6).
     """
     # >>> solution 10.1
     tree = [EMPTY]
@@ -53,16 +72,16 @@ def octree_from_dense(full):
 
 
 def octree_leaf(tree, n, places):
-    """The leaves that places lie in.
+    """The leaves that contain given points.
 
     Args:
         tree: (N,), of `octree_from_dense`.
-        n: cells along a side of the cube.
-        places: (M, 3), in cells, inside the cube.
+        n: cells per side of the cube.
+        places: (M, 3), points in cells, inside the cube.
 
     Returns:
-        (full, low, side): (M,) of bool; (M, 3), the leaf's lower corner in cells; (M,), its side.
-        A place on a common face belongs to the upper leaf.
+        (full, low, side): (M,) of bool; (M, 3), the lower corner of the leaf in cells; (M,), its
+        side. A point on a common face belongs to the upper leaf.
     """
     node = np.zeros(len(places), np.int64)
     low, side = np.zeros(places.shape), np.full(len(places), float(n))
@@ -74,15 +93,15 @@ def octree_leaf(tree, n, places):
     return tree[node] == FULL, low, side
 
 
-def skip_empty(leaf, first, stride, count):
-    """Which samples of rays lie in full leaves, found by jumping from leaf to leaf.
+def skip_empty(leaf: Leaf, first: Vectors, stride: Vectors, count: int) -> Wanted:
+    """Empty-space skipping: which samples of rays lie in full leaves.
 
     Args:
-        leaf: a function from places (M, 3) to (full, low, side), as `octree_leaf` gives them. It
-            is what costs: ask it for as few places as you can.
-        first: (R, 3), the place of each ray's sample 0, in cells.
+        leaf: a function from points (M, 3) to (full, low, side), as for `octree_leaf`. The points
+            are counted: look up as few as you can.
+        first: (R, 3), sample 0 of each ray, in cells.
         stride: (R, 3), from one sample to the next; single components may be zero.
-        count: samples of each ray; all lie inside the cube.
+        count: samples per ray; all lie inside the cube.
 
     Returns:
         (R, count) of bool; handout equations (7) and (8).
@@ -91,7 +110,7 @@ def skip_empty(leaf, first, stride, count):
     wanted = np.zeros((len(first), count), bool)
     k = np.zeros(len(first), np.int64)
     live = np.arange(len(first))
-    for _ in range(count):  # each round passes one sample or more
+    for _ in range(count):  # each iteration advances by one sample or more
         here, step = first[live] + k[live, None] * stride[live], stride[live]
         full, low, side = leaf(here)
         face = low + np.where(step > 0, side[:, None], 0.0)
@@ -109,7 +128,7 @@ def skip_empty(leaf, first, stride, count):
 
 
 def new_table(count):
-    """A hash table with room for `count` voxels twice over, in which every slot is free.
+    """An empty hash table with about twice as many slots as `count` voxels.
 
     A table is an array (slots, 4) of int64: x, y, z of a voxel and its row; row -1: a free slot.
     """
@@ -119,7 +138,7 @@ def new_table(count):
 
 
 def hash_slot(voxels, slots):
-    """Where to look first: the slot (M,) of voxels (M, 3), any whole numbers."""
+    """The hash function: the first slot (M,) to try for voxels (M, 3), any integers."""
     x, y, z = voxels.T
     return (x * 73856093 ^ y * 19349663 ^ z * 83492791) % slots
 
@@ -127,8 +146,8 @@ def hash_slot(voxels, slots):
 def voxel_hash_find(table, voxels):
     """The rows (M,) of voxels (M, 3); -1 for those that are not in the table.
 
-    A search looks at slot `hash_slot`, then at the next ones, after the last at slot 0, until it
-    meets the voxel or a free slot.
+    A search visits slot `hash_slot`, then the next ones, after the last slot 0, until it finds the
+    voxel or a free slot.
     """
     rows, looking = np.full(len(voxels), -1, np.int64), np.arange(len(voxels))
     slot = hash_slot(voxels, len(table))
@@ -144,11 +163,11 @@ def voxel_hash_find(table, voxels):
     return rows
 
 
-def voxel_hash_insert(table, voxels, rows):
-    """Put voxels into a hash table, so that `voxel_hash_find` finds their rows.
+def voxel_hash_insert(table: Table, voxels: Voxels, rows: Rows) -> Table:
+    """Insert voxels into a hash table, so that `voxel_hash_find` finds their rows.
 
     Args:
-        table: (slots, 4); it stays as it is.
+        table: (slots, 4); it must not change.
         voxels: (M, 3); one that is in the table already, or occurs twice, gets the latest row.
         rows: (M,), 0 or more.
 
@@ -174,9 +193,9 @@ def voxel_hash_insert(table, voxels, rows):
 
 
 def corners(table, places):
-    """The eight voxels around each place: (row, weight), both (8, M); row -1 where there is none.
+    """The eight voxels around each point: (row, weight), both (8, M); row -1 for an absent one.
 
-    Values sit in the middles of cells; weights are trilinear and sum to 1.
+    Values belong to the centers of cells; weights are trilinear and sum to 1.
     """
     low = np.floor(places - 0.5).astype(np.int64)
     part = places - 0.5 - low
@@ -188,26 +207,27 @@ def corners(table, places):
 
 
 def sample_sparse(values, row, weight):
-    """Values (M, C) at places with these `corners`; a voxel that is not there counts as 0.
+    """Values (M, C) at points with these `corners`; an absent voxel counts as 0.
 
     Args:
         values: (V, C), one row for each active voxel.
-        row, weight: (8, M); row -1 where a voxel is missing.
+        row, weight: (8, M); row -1 for an absent voxel.
     """
     padded = np.concatenate([values, np.zeros((1, values.shape[1]))])  # row -1 is the last one
     return np.einsum("em,emc->mc", weight, padded[row])
 
 
-def sample_sparse_adjoint(count, row, weight, g):
-    """The transpose of `sample_sparse`: each sample's number goes back to the voxels it came from.
+def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples) -> Values:
+    """The adjoint of `sample_sparse`: scatters the derivative of each sample to its voxels.
 
     Args:
-        count: V, how many voxels are active.
-        row, weight: (8, M), as `sample_sparse` had them; row -1 where a voxel is missing.
-        g: (M, C), the derivative of some loss by each sample.
+        count: V, the number of active voxels.
+        row, weight: (8, M), as for `sample_sparse`; row -1 for an absent voxel.
+        g: (M, C), the derivative of some loss with respect to each sample.
 
     Returns:
-        (V, C), the derivative of that loss by each value; handout equations (10) and (11).
+        (V, C), the derivative of that loss with respect to each value; handout equations (10) and
+        (11).
     """
     # >>> solution 10.4
     known = row >= 0
@@ -218,17 +238,19 @@ def sample_sparse_adjoint(count, row, weight, g):
     # <<< solution
 
 
-def prune_and_dilate(n, voxels, row, share, threshold, steps):
-    """The voxels that matter, and all around them.
+def prune_and_dilate(
+    n: int, voxels: Voxels, row: Corners, share: Corners, threshold: float, steps: int
+) -> Voxels:
+    """Prune voxels of small contribution, and dilate the remaining set.
 
     Args:
-        n: voxels along a side of the cube.
+        n: voxels per side of the cube.
         voxels: (V, 3), the active ones, in any order.
-        row, share: (8, M) or any other shape: sample after sample, which row was read and how much
-            it counts in a pixel; row -1 where a voxel is missing. Rows may occur many times, or
+        row, share: (8, M) or any other shape: for each sample, the row of a voxel and its
+            contribution to a pixel; row -1 for an absent voxel. Rows may occur many times, or
             never.
-        threshold: a voxel stays if its *largest* share is more than this.
-        steps: then it brings along all voxels of the cube whose three indices differ from its own
+        threshold: a voxel is kept if its *largest* share is more than this.
+        steps: each kept voxel adds all voxels of the cube whose three indices differ from its own
             by at most this; 0 or more.
 
     Returns:
@@ -249,22 +271,22 @@ def prune_and_dilate(n, voxels, row, share, threshold, steps):
 
 
 def march(n, voxels, table, rays):
-    """Where rays read a sparse grid: samples in cells that an active voxel reaches, no others.
+    """Samples of rays in a sparse grid, in the cells that active voxels affect, no others.
 
-    A ray is cut into 2 n equal steps from where it enters the cube to where it leaves it, with a
-    sample in the middle of each.
+    A ray is cut into 2 n equal steps between its entry and its exit of the cube, with a sample at
+    the midpoint of each.
 
     Args:
-        n: voxels along a side.
+        n: voxels per side.
         voxels: (V, 3), the active ones.
-        table: tells their rows.
+        table: maps them to their rows.
         rays: (2, R, 3), origins and unit directions, in the units of the cube from -1 to 1, not in
             cells; rays that miss the cube have no samples.
 
     Returns:
-        a tuple for `render`, `loss_and_grad` and `shares`: (wanted (R, 2 n) of bool, which of a
-        ray's samples are read; step (R,), their lengths; row and weight (8, M), `corners` of the
-        wanted samples, ray after ray).
+        a tuple for `render`, `loss_and_grad` and `shares`: (wanted (R, 2 n) of bool, the samples
+        that are evaluated; step (R,), their lengths; row and weight (8, M), `corners` of these
+        samples, ray by ray).
     """
     origin, direction = rays
     with np.errstate(divide="ignore"):
@@ -273,7 +295,7 @@ def march(n, voxels, table, rays):
     step = np.maximum(ends.max(axis=0).min(axis=1) - near, 0) / (2 * n)
     first = (origin + (near + step / 2)[:, None] * direction + 1) * (n / 2)
     stride = step[:, None] * direction * (n / 2)
-    # A sample reads voxels up to a cell away: nothing is pruned here, all grow by one.
+    # A sample uses voxels up to a cell away: no pruning here, dilation by one.
     alone = np.arange(len(voxels))[None]
     reached = prune_and_dilate(n, voxels, alone, np.ones(alone.shape), 0.0, 1)
     touched = np.zeros((n, n, n), bool)
@@ -288,7 +310,7 @@ def march(n, voxels, table, rays):
 
 
 def _along_rays(values, samples):
-    """What both passes need: values at samples, weights, and what is left behind each."""
+    """For both passes: values at samples, weights, and the transmittance behind each."""
     wanted, step, row, weight = samples
     at = np.zeros((*wanted.shape, 4))
     at[wanted] = sample_sparse(values, row, weight)
@@ -309,7 +331,7 @@ def render(values, samples):
 
 
 def loss_and_grad(values, samples, target):
-    """Mean squared error of the rays' colors, and its derivative.
+    """Mean squared error of the colors of rays, and its derivative.
 
     Args:
         values, samples: as for `render`.
@@ -332,22 +354,22 @@ def loss_and_grad(values, samples, target):
 
 
 def shares(values, samples):
-    """(row, share), both (8, M): how much each voxel counts in a pixel, sample after sample.
+    """(row, share), both (8, M): the contribution of each voxel to a pixel, sample by sample.
 
-    A share is the sample's weight in its pixel times the voxel's weight in the sample.
+    A share is the weight of the sample in its pixel times the weight of the voxel in the sample.
     """
     wanted, _, row, weight = samples
     return row, weight * _along_rays(values, samples)[1][wanted]
 
 
 class Adam:
-    """Steps of Adam for one array, as in assignment 01, with beta 0.9 and 0.99."""
+    """Adam for one array, as in assignment 01, with beta1 = 0.9 and beta2 = 0.99."""
 
     def __init__(self):
         self.m = self.v = self.k = 0
 
     def step(self, x, d_x):
-        """The array after one step of RATES; x itself stays as it is."""
+        """The array after one step with learning rates RATES; x does not change."""
         self.k += 1
         self.m = 0.9 * self.m + 0.1 * d_x
         self.v = 0.99 * self.v + 0.01 * d_x**2
@@ -355,22 +377,32 @@ class Adam:
         return x - RATES * m / (np.sqrt(v) + 1e-10)
 
 
-def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
-    """Recover a sparse grid, and with it which voxels there are.
+def fit_sparse(
+    n: int,
+    voxels: Voxels,
+    values: Values,
+    rays: Rays,
+    target: Colors,
+    rounds: int,
+    steps: int,
+    threshold: float,
+    grow: int,
+) -> tuple[Voxels, Values, Losses]:
+    """Recover a sparse grid: its values and the set of its active voxels.
 
     Args:
-        n: voxels along a side of the cube.
-        voxels: (V, 3), active at the start, ordered in any way.
-        values: (V, 4), their values at the start; these arrays must not change.
+        n: voxels per side of the cube.
+        voxels: (V, 3), active at the start, in any order.
+        values: (V, 4), their initial values; these arrays must not change.
         rays: (2, R, 3), origins and unit directions, in the units of the cube, as for `march`.
         target: (R, 3), the measured colors.
-        rounds: 1 or more; between two of them the list of voxels is made anew.
+        rounds: 1 or more; between two of them the list of voxels is renewed.
         steps: of Adam in each round, 0 or more.
         threshold, grow: of `prune_and_dilate`.
 
     Returns:
-        (voxels, values, losses): of the last round; losses (rounds * steps,), of each point that a
-        step starts from. Handout equations (14) to (16).
+        (voxels, values, losses): of the last round; losses (rounds * steps,), before each step.
+        Handout equations (14) to (16).
     """
     # >>> solution 10.6
     losses = []
@@ -393,5 +425,5 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
 
 
 def active_stats(n, tree, table, values):
-    """Bytes of a volume: (dense, octree, hash table, values); 8 for each number of any kind."""
+    """Bytes of a volume: (dense, octree, hash table, values), 8 for each number."""
     return 8 * 4 * n**3, 8 * tree.size, 8 * table.size, 8 * values.size

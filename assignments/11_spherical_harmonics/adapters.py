@@ -1,10 +1,8 @@
 """Between the checks and your `plenoxels.py`: calls in a row.
 
-Runs beside your file; nothing here is to be changed or handed in. Arrays reach your functions as
-copies. Whether one was written to shows in what a second call makes of the same array.
+Runs beside your file; do not change or submit it. Arrays reach your functions as
+copies. A second call shows whether one was changed.
 """
-
-from __future__ import annotations
 
 import plenoxels
 
@@ -16,6 +14,6 @@ def gradient(density, coefficients, rays, target):
 
 
 def fit_again(*given):
-    """What `fit_plenoxels` returns for the same arrays the second time."""
+    """Result of `fit_plenoxels` for the same arrays the second time."""
     plenoxels.fit_plenoxels(*given)
     return plenoxels.fit_plenoxels(*given)

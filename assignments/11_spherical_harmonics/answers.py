@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -20,7 +18,7 @@ def mebibytes(reference, n, d):
 
 
 def turned_around_z(reference, a, b, t):
-    """Coefficient 3 after a turn by t degrees around z."""
+    """Coefficient 3 after a rotation by t degrees around z."""
     angle = np.radians(t)
     R = np.eye(3)
     R[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]

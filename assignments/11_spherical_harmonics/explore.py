@@ -1,20 +1,19 @@
 # %% [markdown]
-# # Recovering a shiny scene
-# Photographs a scene drawn by formulas, recovers it with your functions, coarse to fine and at
-# once, and draws your derivative as glyphs. Where the C++ core is installed, its harmonics stand
-# beside yours. Never graded. Run it as `python explore.py`; `--views`, `--pixels`, `--degree`,
-# `--levels` and `--steps` (in all) change the amount of work, `--coarse` the cells of the coarsest
-# level.
+# # Recovering a glossy scene
+# Photographs a scene defined by formulas, recovers it with your functions, coarse to fine and with
+# a fixed grid, and shows your derivative as glyphs. Where the C++ core is installed, its harmonics
+# stand beside yours. Never graded. Run it as `python explore.py`; `--views`, `--pixels`,
+# `--degree`, `--levels` and `--steps` (in all) change the amount of work, `--coarse` the cells of
+# the coarsest level.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 
 import numpy as np
 import plenoxels as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.explore import option
 
 views, pixels, degree = option("views", 30), option("pixels", 12), option("degree", 2)
@@ -24,7 +23,7 @@ K = (degree + 1) ** 2
 
 # %% [markdown]
 # ## A scene
-# Two balls, the larger one red, the smaller one blue, and a light that both mirror.
+# Two balls, the larger one red, the smaller one blue, and a light that both reflect.
 
 
 # %%
@@ -53,19 +52,7 @@ def shiny_balls(n):
 
 def photographs(count, size, turned=0.0):
     """Rays (2, count size^2, 3) of cameras all around the scene."""
-    height = 1 - (np.arange(count) + 0.5) * 2 / count
-    phi = np.arange(count) * 2.399963 + turned
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.39
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(3.2 * place, (size**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays_to_origin(3.2 * all_around(count, turned), size, 0.39)
 
 
 def seen(volume, rays):
@@ -80,7 +67,7 @@ def decibels(a, b):
 scene = shiny_balls(24)
 rays, unseen = photographs(views, pixels), photographs(8, 16, 1.0)
 target, truth = seen(scene, rays), seen(scene, unseen)
-print(f"scene: two shiny balls, {views} photographs of {pixels} x {pixels}")
+print(f"scene: two glossy balls, {views} photographs of {pixels} x {pixels}")
 
 # %% [markdown]
 # ## Your fit
@@ -88,7 +75,7 @@ print(f"scene: two shiny balls, {views} photographs of {pixels} x {pixels}")
 
 # %%
 def recover(n, count):
-    """(density, coefficients) and seconds, from a grid of n^3 through so many levels."""
+    """(density, coefficients) and seconds, from a grid of n^3 through the given levels."""
     start = np.full((n, n, n), 0.1), np.zeros((n, n, n, K, 3))
     before = time.perf_counter()
     found = mine.fit_plenoxels(*start, rays, target, count, max(1, steps // count))
@@ -99,13 +86,13 @@ fine, seconds = recover(coarse, levels)
 fixed, fixed_seconds = recover(cells, 1)
 for name, volume, took in (("coarse to fine", fine, seconds), ("fixed grid", fixed, fixed_seconds)):
     own, new = decibels(seen(volume, rays), target), decibels(seen(volume, unseen), truth)
-    print(f"{name}: {took:.1f} s, {own:.1f} dB on the photographs, {new:.1f} dB on new views")
+    print(f"{name}: {took:.1f} s, {own:.1f} dB on the photographs, {new:.1f} dB on held-out views")
     pairs = zip(np.split(seen(volume, unseen), 8), np.split(truth, 8), strict=True)
-    print("  each new view:", *(f"{decibels(a, b):.1f}" for a, b in pairs), "dB")
+    print("  each held-out view:", *(f"{decibels(a, b):.1f}" for a, b in pairs), "dB")
 
 # %% [markdown]
 # ## The C++ core
-# The same harmonics and the same fit, with the core's `sh` in the place of your `sh_color` and
+# The same harmonics and the same fit, with the core's `sh` instead of your `sh_color` and
 # `sh_color_adjoint`.
 
 # %%
@@ -145,12 +132,12 @@ else:
     core_fine, _ = recover(coarse, levels)
     mine.sh_color, mine.sh_color_adjoint = yours
     print(
-        f"core: {decibels(seen(core_fine, unseen), truth):.1f} dB on new views with its harmonics"
+        f"core: {decibels(seen(core_fine, unseen), truth):.1f} dB on held-out views, its harmonics"
     )
 
 # %% [markdown]
-# ## Pictures
-# Glyphs: what a step against your derivative will do to the brightness of a cell, by direction
+# ## Figures
+# Glyphs: the change of the brightness of a cell by a step against your derivative, by direction
 # within the slice (radii are roots); red brightens, blue darkens. The volume is still gray there.
 
 
@@ -190,4 +177,4 @@ density = fine[0]
 axes.imshow(density[:, len(density) // 2].T, cmap="viridis", origin="lower")
 axes.set(xticks=[], yticks=[], title="density, coarse to fine, middle slice")
 figure.savefig("plenoxels.png", dpi=100)
-print("plenoxels.png: new view, your derivative as glyphs, density")
+print("plenoxels.png: held-out view, your derivative as glyphs, density")

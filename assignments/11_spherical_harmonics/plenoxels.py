@@ -1,9 +1,9 @@
-"""Light by direction in a few numbers: spherical harmonics, light probes, Plenoxels.
+"""Functions of direction in a few numbers: spherical harmonics, light probes, Plenoxels.
 
 A direction is a unit vector (x, y, z). Coefficient l (l + 1) + m belongs to the harmonic of degree
-l and order m, m from -l to l; there are K = (degree + 1)^2. Signs keep the phase (-1)^m, so degree
-1 is 0.4886 times (-y, z, -x). Degrees go from 0 to 4. A grid is indexed [i, j, k] along x, y, z;
-places in it are given in *cells*: the value at [i, j, k] sits at the place (i, j, k).
+l and order m, m from -l to l; there are K = (degree + 1)^2. Signs include the phase (-1)^m, so
+degree 1 is 0.4886 times (-y, z, -x). Degrees go from 0 to 4. A grid is indexed [i, j, k] along x,
+y, z; points in it are measured in *cells*: the value at [i, j, k] belongs to the point (i, j, k).
 
 Your tasks are six functions, one section of the handout each; `photograd course check 11` tells
 how far you are. The other functions are given and stay as they are. All numbers are float64.
@@ -11,9 +11,25 @@ how far you are. The other functions are given and stay as they are. All numbers
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
-SAMPLES = 20  # on each ray
+# Arrays and their shapes; float64 where nothing else is said.
+Vectors = Annotated[np.ndarray, "N 3"]
+Basis = Annotated[np.ndarray, "N K"]
+Weights = Annotated[np.ndarray, "N"]
+Values = Annotated[np.ndarray, "N C"]
+Coefficients = Annotated[np.ndarray, "K C"]
+RowCoefficients = Annotated[np.ndarray, "N K C"]
+Rotation = Annotated[np.ndarray, "3 3"]
+Density = Annotated[np.ndarray, "X Y Z"]
+Probes = Annotated[np.ndarray, "X Y Z K C"]
+Rays = Annotated[np.ndarray, "2 R 3"]  # origins, directions
+Colors = Annotated[np.ndarray, "R C"]
+Losses = Annotated[np.ndarray, "steps"]
+
+SAMPLES = 20  # per ray
 RATE = 0.1  # of Adam
 # >>> solution 11.1
 
@@ -35,7 +51,7 @@ def _pieces(directions, degree):
 
 
 def _size(ell, m):
-    """What makes the harmonic of degree l and order m >= 0 orthonormal, with its sign."""
+    """The normalization of degree l and order m >= 0, with its sign."""
     share = (2 * ell + 1) / (4 * np.pi) / np.prod(np.arange(ell - m + 1, ell + m + 1))
     return (-1) ** m * np.sqrt(share if m == 0 else 2 * share)
 
@@ -43,8 +59,8 @@ def _size(ell, m):
 # <<< solution
 
 
-def sh_basis(directions, degree):
-    """All harmonics up to a degree, at some directions.
+def sh_basis(directions: Vectors, degree: int) -> Basis:
+    """All harmonics up to a degree, at given directions.
 
     Args:
         directions: (N, 3), unit vectors.
@@ -78,7 +94,7 @@ def quadrature(degree):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1), weights
 
 
-def sh_project(directions, weights, values, degree):
+def sh_project(directions: Vectors, weights: Weights, values: Values, degree: int) -> Coefficients:
     """Coefficients of a function that is known at the directions of a quadrature.
 
     Args:
@@ -96,7 +112,7 @@ def sh_project(directions, weights, values, degree):
 
 
 def sh_color(coefficients, v):
-    """Colors seen along vectors: the sum of each row's coefficients times the harmonics there.
+    """View-dependent colors: for each row, the sum of coefficients times harmonics.
 
     Args:
         coefficients: (N, K, C), a set for each vector.
@@ -110,13 +126,15 @@ def sh_color(coefficients, v):
     return np.einsum("nk,nkc->nc", sh_basis(d, degree), coefficients)
 
 
-def sh_color_adjoint(coefficients, v, g):
-    """The adjoint of `sh_color`: derivatives by the coefficients and by the vectors.
+def sh_color_adjoint(
+    coefficients: RowCoefficients, v: Vectors, g: Values
+) -> tuple[RowCoefficients, Vectors]:
+    """The adjoint of `sh_color` with respect to the coefficients and the vectors.
 
     Args:
         coefficients: (N, K, C).
         v: (N, 3), of any length but 0.
-        g: (N, C), the derivative of some loss by each color.
+        g: (N, C), the derivative of some loss with respect to each color.
 
     Returns:
         (d_coefficients, d_v), of the shapes of coefficients and v; equations (11) to (14).
@@ -142,8 +160,8 @@ def sh_color_adjoint(coefficients, v, g):
     # <<< solution
 
 
-def sh_rotate(coefficients, R):
-    """Coefficients of a function after it was turned: the value it had at d is now at R d.
+def sh_rotate(coefficients: Coefficients, R: Rotation) -> Coefficients:
+    """Coefficients of a rotated function: the value that was at d is now at R d.
 
     Args:
         coefficients: (K, C).
@@ -161,11 +179,11 @@ def sh_rotate(coefficients, R):
 
 
 def corners(shape, p):
-    """The eight values around each place, and their trilinear weights.
+    """The eight values around each point, and their trilinear weights.
 
     Args:
         shape: (X, Y, Z) of a grid.
-        p: (N, 3), places in cells; beyond the outermost values the border's hold.
+        p: (N, 3), points in cells; beyond the border its values are repeated.
 
     Returns:
         (index, weight), both (8, N): index counts rows of the grid reshaped to (X Y Z, ...).
@@ -181,12 +199,12 @@ def corners(shape, p):
     return np.stack(index), np.stack(weight)
 
 
-def probe_irradiance(probes, p, normals):
-    """Irradiance on surfaces among light probes: blend the probes, apply the cosine lobe.
+def probe_irradiance(probes: Probes, p: Vectors, normals: Vectors) -> Values:
+    """Irradiance of surfaces: interpolate light probes, apply the cosine lobe.
 
     Args:
         probes: (X, Y, Z, K, C), coefficients of the light that arrives at each probe.
-        p: (N, 3), places of the surfaces, in cells.
+        p: (N, 3), points of the surfaces, in cells.
         normals: (N, 3), unit vectors.
 
     Returns:
@@ -204,14 +222,14 @@ def probe_irradiance(probes, p, normals):
 
 
 def march(shape, rays):
-    """Where rays sample a grid that fills the cube from -1 to 1 in x, y and z.
+    """Samples of rays in a grid that fills the cube from -1 to 1 in x, y and z.
 
     Args:
         shape: (X, Y, Z) of the grid.
         rays: (2, R, 3), origins and unit directions; rays that miss the cube have no samples.
 
     Returns:
-        a tuple for `render` and `loss_and_grad`: (shape, v (R, 3) towards the viewer, step (R,),
+        a tuple for `render` and `loss_and_grad`: (shape, v (R, 3) toward the viewer, step (R,),
         index and weight (8, R SAMPLES)).
     """
     origin, direction = rays
@@ -226,7 +244,7 @@ def march(shape, rays):
 
 
 def _along_rays(density, coefficients, samples):
-    """What both passes need: corner values, weights of samples, blended coefficients."""
+    """For both passes: transmittance, weights, and coefficients of samples and of rays."""
     _, _, step, index, weight = samples
     K, C = coefficients.shape[3:]
     sigma = np.sum(weight * density.ravel()[index], axis=0).reshape(len(step), -1)
@@ -241,12 +259,12 @@ def _along_rays(density, coefficients, samples):
 def render(density, coefficients, samples):
     """Colors of rays through a volume before a black background.
 
-    Along a ray the direction is the same, so coefficients are blended first and `sh_color` is
-    asked once a ray.
+    Along a ray the direction is constant, so weighted coefficients are summed first and `sh_color`
+    is called once per ray.
 
     Args:
-        density: (X, Y, Z), extinction for each unit of length, not negative.
-        coefficients: (X, Y, Z, K, C), of the color by the direction towards the viewer.
+        density: (X, Y, Z), extinction per unit of length, not negative.
+        coefficients: (X, Y, Z, K, C), of the color by the direction toward the viewer.
         samples: of `march`, for this shape.
 
     Returns:
@@ -256,7 +274,7 @@ def render(density, coefficients, samples):
 
 
 def loss_and_grad(density, coefficients, samples, target):
-    """Mean squared error of the rays' colors, and its derivatives.
+    """Mean squared error of the colors of rays, and its derivatives.
 
     Args:
         density, coefficients, samples: as for `render`.
@@ -283,13 +301,13 @@ def loss_and_grad(density, coefficients, samples, target):
 
 
 class Adam:
-    """Steps of Adam for one array, as in assignment 01, with beta 0.9 and 0.99."""
+    """Adam for one array, as in assignment 01, with beta1 = 0.9 and beta2 = 0.99."""
 
     def __init__(self):
         self.m = self.v = self.k = 0
 
     def step(self, x, d_x):
-        """The array after one step of RATE; x itself stays as it is."""
+        """The array after one step with learning rate RATE; x does not change."""
         self.k += 1
         self.m = 0.9 * self.m + 0.1 * d_x
         self.v = 0.99 * self.v + 0.01 * d_x**2
@@ -297,20 +315,22 @@ class Adam:
         return x - RATE * m / (np.sqrt(v) + 1e-8)
 
 
-def fit_plenoxels(density, coefficients, rays, target, levels, steps):
+def fit_plenoxels(
+    density: Density, coefficients: Probes, rays: Rays, target: Colors, levels: int, steps: int
+) -> tuple[Density, Probes, Losses]:
     """Recover a volume coarse to fine.
 
     Args:
-        density: (X, Y, Z), where the descent starts; these arrays must not change.
+        density: (X, Y, Z), the initial guess; these arrays must not change.
         coefficients: (X, Y, Z, K, C), likewise.
         rays: (2, R, 3), origins and unit directions.
         target: (R, C), the measured colors.
-        levels: how many resolutions, from 1 upwards; each has twice the cells of the one before.
-        steps: of Adam at each resolution, from 0 upwards.
+        levels: the number of resolutions, 1 or more; each has twice the cells of the one before.
+        steps: of Adam at each resolution, 0 or more.
 
     Returns:
-        (density, coefficients, losses): of the finest level; losses (levels steps,), of each point
-        that a step starts from. Handout equations (20) to (23).
+        (density, coefficients, losses): of the finest level; losses (levels steps,), before each
+        step. Handout equations (20) to (23).
     """
     # >>> solution 11.6
     losses = []

@@ -1,10 +1,8 @@
 """Between the checks and your `splatting.py`: functions `back` cannot cross the pipe.
 
-Runs beside your file; nothing here is to be changed or handed in. Each function calls yours, and
+Runs beside your file; do not change or submit it. Each function calls yours, and
 the `back` that it returns with the derivatives that the check gives.
 """
-
-from __future__ import annotations
 
 import numpy as np
 import splatting
@@ -16,7 +14,7 @@ def covariance(quats, log_scales):
 
 
 def covariance_back(quats, log_scales, d_cov):
-    """What its `back` returns."""
+    """Result of its `back`."""
     return splatting.covariance(quats, log_scales)[1](d_cov)
 
 
@@ -26,7 +24,7 @@ def project(means, cov, camera):
 
 
 def project_back(means, cov, camera, d_mean2d, d_cov2d):
-    """What its `back` returns."""
+    """Result of its `back`."""
     return splatting.project(means, cov, camera)[3](d_mean2d, d_cov2d)
 
 
@@ -36,7 +34,7 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
 
 
 def screen_alpha_back(mean2d, cov2d, opacity_logits, pixels, d_alpha):
-    """What its `back` returns."""
+    """Result of its `back`."""
     return splatting.screen_alpha(mean2d, cov2d, opacity_logits, pixels)[1](d_alpha)
 
 
@@ -46,7 +44,7 @@ def composite(alpha, colors, depth, background):
 
 
 def composite_back(alpha, colors, depth, background, d_shown):
-    """What its `back` returns."""
+    """Result of its `back`."""
     return splatting.composite(alpha, colors, depth, background)[1](d_shown)
 
 
@@ -56,7 +54,7 @@ def render(gaussians, camera, pixels, background):
 
 
 def render_back(gaussians, camera, pixels, background, d_shown):
-    """What its `back` returns."""
+    """Result of its `back`."""
     return splatting.render(gaussians, camera, pixels, background)[1](d_shown)
 
 

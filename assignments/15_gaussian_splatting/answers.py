@@ -1,6 +1,4 @@
-"""Right answers to the generated questions, worked out with the solution."""
-
-from __future__ import annotations
+"""Right answers to the generated questions, computed with the solution."""
 
 import numpy as np
 
@@ -23,7 +21,7 @@ def variance_of_a_ball(reference, s, z, f):
 
 
 def slope_of_the_held_entry(reference, h, f, z):
-    """d J_xz / d t_z to the right of the limit, by differences of a needle along the axis."""
+    """d J_xz / d t_z right of the limit, by finite differences of a needle along the axis."""
     width = 100
     camera = _camera(f, (1 + reference.MARGIN) * width - h * f, width)
     needle, entries = np.diag([0.0, 0.0, 1.0])[None], []
@@ -34,7 +32,7 @@ def slope_of_the_held_entry(reference, h, f, z):
 
 
 def slope_of_the_first_alpha(reference, a, b):
-    """The derivative of a pixel by the alpha of the nearer of two splats."""
+    """The derivative of a pixel with respect to the alpha of the nearer of two splats."""
     colors, depth = np.array([[1.0] * 3, [0.5] * 3]), np.array([1.0, 2.0])
     _, back = reference.composite(np.array([[a], [b]]), colors, depth, np.full(3, 0.2))
     return float(back(np.array([[1.0, 0.0, 0.0]]))[0][0, 0])

@@ -1,20 +1,19 @@
 # %% [markdown]
 # # Photographs become Gaussians
-# Photographs three balls drawn by formulas, fits Gaussians to them with your functions, and draws
-# what pulls at them; then two formulas of public code are put to the test by differences of your
-# own functions, and everything is compared with the C++ core where that is installed. Never
-# graded. `python explore.py` takes `--steps`, `--pixels`, `--views`, `--most` (Gaussians),
+# Photographs three balls defined by formulas, fits Gaussians to them with your functions, and plots
+# their gradients; then two formulas of public code are tested by finite differences of your own
+# functions, and everything is compared with the C++ core where that is installed. Never graded.
+# `python explore.py` takes `--steps`, `--pixels`, `--views`, `--most` (Gaussians),
 # `--every` (steps between two changes of their number), `--seed`, and `--core-pixels`.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 
 import numpy as np
 import splatting as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, look_at_origin, striped_balls
 from photograd_course.explore import option
 from PIL import Image
 
@@ -29,10 +28,7 @@ BACKGROUND = np.array([0.05, 0.06, 0.09])
 # %%
 def camera_at(place, width):
     """A camera at a place that looks at the origin, x to the right, y down, z forward."""
-    z = -place / np.linalg.norm(place)
-    x = np.cross(z, [0.0, 1.0, 0.0])
-    x /= np.linalg.norm(x)
-    W = np.stack([x, np.cross(z, x), z])
+    W = look_at_origin(place)[:3, :3].T
     pose = np.concatenate([W, -(W @ place)[:, None]], axis=1)
     middle = np.full(2, width / 2)
     return {
@@ -46,40 +42,19 @@ def camera_at(place, width):
 
 def around(number, width, turn=0.0):
     """Cameras on a sphere of 3.2 m around the origin."""
-    height = 0.8 - 1.2 * (np.arange(number) + 0.5) / number
-    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
-    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    places = 3.2 * all_around(number, turn, up=1, top=0.8, span=1.2)
     return [camera_at(place, width) for place in places]
 
 
-BALLS = (
-    ((-0.3, 0.0, 0.1), 0.5, (0.95, 0.5, 0.35)),
-    ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
-    ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
-)
-
-
 def photograph(camera):
-    """Three lit and striped balls by rays, nine for each pixel."""
+    """Three lit and striped balls by ray tracing, nine rays per pixel."""
     n, fine = camera["width"], 3
     W, b = camera["camera_from_world"][:, :3], camera["camera_from_world"][:, 3]
     v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
     d = np.stack([u, v, 0 * u], axis=-1) - [*camera["center"], 0]
     d = d / [*camera["focal"], 1] + [0, 0, 1]
     d = d / np.linalg.norm(d, axis=-1, keepdims=True) @ W
-    eye = -b @ W
-    image, nearest = np.tile(BACKGROUND, (fine * n, fine * n, 1)), np.full(u.shape, np.inf)
-    for middle, radius, paint in BALLS:
-        away = np.array(middle) - eye
-        along = d @ away
-        inside = radius**2 - away @ away + along**2
-        t = along - np.sqrt(np.maximum(inside, 0))
-        hit = (inside > 0) & (t < nearest)
-        p = eye + t[hit, None] * d[hit]
-        light = 0.45 + 0.55 * np.maximum((p - middle) @ [0.4, 0.8, 0.45] / radius, 0)
-        stripes = np.where(np.sin(p @ [9.0, 14.0, 5.0]) > 0, 1.0, 0.55)
-        image[hit] = (light * stripes)[:, None] * np.array(paint)
-        nearest[hit] = t[hit]
+    image = striped_balls(-b @ W, d, BACKGROUND)
     return image.reshape(n, fine, n, fine, 3).mean(axis=(1, 3))
 
 
@@ -89,7 +64,7 @@ def decibels(one, other):
 
 
 def cloud(number, rng):
-    """Where a fit begins: gray balls anywhere."""
+    """The initial scene of a fit: gray balls at random positions."""
     return {
         "means": rng.uniform(-0.8, 0.8, (number, 3)),
         "quats": np.eye(4)[[0] * number],
@@ -111,13 +86,13 @@ frames, began = [], time.perf_counter()
 
 
 def watch(step, scene, _):
-    """Says how far the fit has come, and keeps frames of it."""
+    """Prints the progress of the fit, and stores frames of it."""
     if step % max(1, steps // 40) == 0:
         shown, _ = mine.picture(scene, unseen[0][0], BACKGROUND)
         frames.append(shown)
         print(
             f"\rfit:    step {step} of {steps}, {len(scene['means'])} Gaussians, "
-            f"{decibels(shown, unseen[0][1]):.1f} dB on a new view, "
+            f"{decibels(shown, unseen[0][1]):.1f} dB on a held-out view, "
             f"{time.perf_counter() - began:.0f} s ",
             end="",
             flush=True,
@@ -132,13 +107,13 @@ scores = [decibels(mine.picture(found, camera, BACKGROUND)[0], truth) for camera
 empty = [decibels(np.broadcast_to(BACKGROUND, truth.shape), truth) for _, truth in unseen]
 print(
     f"\rfit:    {steps} steps in {seconds:.0f} s, {len(found['means'])} Gaussians, "
-    f"{np.mean(scores):.1f} dB on new views "
-    f"(nothing at all has {np.mean(empty):.1f} dB)  "
+    f"{np.mean(scores):.1f} dB on held-out views "
+    f"(an empty scene has {np.mean(empty):.1f} dB)  "
 )
 
 
 def byte(shown):
-    """A picture as PNG and GIF have it."""
+    """An image in 8 bits."""
     return (255 * np.clip(shown, 0, 1) + 0.5).astype(np.uint8)
 
 
@@ -146,11 +121,12 @@ large = [
     Image.fromarray(byte(each)).resize((256, 256), Image.Resampling.NEAREST) for each in frames
 ]
 large[0].save("fit.gif", save_all=True, append_images=large[1:], duration=120, loop=0)
-print("fit.gif: a new view while it is learned")
+print("fit.gif: a held-out view during the fit")
 
 # %% [markdown]
-# ## What pulls at each Gaussian
-# Arrows: where descent moves each mean on the screen. Circles: `pull`, what `densify` looks at.
+# ## The gradient of each Gaussian
+# Arrows: where gradient descent moves each mean on the screen. Circles: the absolute gradient, the
+# criterion of `densify`.
 
 # %%
 camera, truth = views[0]
@@ -158,7 +134,7 @@ shown, back = mine.picture(found, camera, BACKGROUND)
 gradient = back(2 * (shown - truth) / shown[..., 0].size)
 cov, _ = mine.covariance(found["quats"], found["log_scales"])
 places, *_ = mine.project(found["means"], cov, camera)
-# What moves a mean on the screen by one pixel, in the world, across the line of sight.
+# The gradient with respect to the means, per pixel on the screen.
 W = camera["camera_from_world"][:2, :3]
 depth = mine.depths(found["means"], camera)
 arrows = -(gradient["means"] @ W.T) * (depth / camera["focal"][0])[:, None]
@@ -168,7 +144,7 @@ panels = figure.subplots(1, 3)
 for axes, image, title in (
     (panels[0], truth, "a photograph"),
     (panels[1], shown, "your Gaussians"),
-    (panels[2], shown, "arrows: descent; circles: pull"),
+    (panels[2], shown, "arrows: −gradient; circles: absolute gradient"),
 ):
     axes.imshow(np.clip(image, 0, 1), extent=(0, size, size, 0))
     axes.set(title=title, xticks=[], yticks=[], xlim=(0, size), ylim=(size, 0))
@@ -176,16 +152,16 @@ panels[2].scatter(*places.T, s=300 * pull / pull.max(), facecolors="none", edgec
 long = np.linalg.norm(arrows, axis=1).max()
 panels[2].quiver(*places.T, *(arrows.T / long), angles="xy", scale_units="xy", scale=0.2, color="r")
 figure.savefig("pull.png", dpi=100)
-print("pull.png: a photograph, your picture, and what pulls at it")
+print("pull.png: a photograph, your image, and the gradients")
 
 # %% [markdown]
-# ## Two formulas of public code, put to the test
-# Nothing here knows the right derivative. It moves the arguments of *your* functions.
+# ## A test of two formulas of public code
+# The reference is finite differences of *your* functions.
 
 
 # %%
 def differences(function, x, g, eps=1e-5):
-    """The derivative of <function(x), g> by each number of x."""
+    """Central differences of <function(x), g> with respect to each number of x."""
     slope = np.zeros_like(x)
     for k in np.ndindex(x.shape):
         ends = []
@@ -198,7 +174,7 @@ def differences(function, x, g, eps=1e-5):
 
 
 def off(told, right):
-    """How far a derivative is off, relative to the right one."""
+    """Relative error of a derivative."""
     return np.linalg.norm(told - right) / np.linalg.norm(right)
 
 
@@ -210,12 +186,12 @@ right = differences(lambda x: mine.screen_alpha(m, x, np.zeros(1), grid)[0], S, 
 alpha, _ = mine.screen_alpha(m, S, np.zeros(1), grid)
 full = S[0, [0, 1, 1, 2]].reshape(2, 2) + mine.LOW_PASS * np.eye(2)
 Q, d = np.linalg.inv(full), m - grid
-s = -(g * alpha)[0]  # the derivative by the exponent's sigma
+s = -(g * alpha)[0]  # the derivative with respect to sigma
 kept = np.array([0.5 * s @ d[:, 0] ** 2, 0.5 * s @ (d[:, 0] * d[:, 1]), 0.5 * s @ d[:, 1] ** 2])
 
 
 def by_covariance(of_conic, factor):
-    """From derivatives by A, B, C to those by xx, xy, yy, with B's taken `factor` times."""
+    """From derivatives of A, B, C to those of xx, xy, yy, that of B times `factor`."""
     H = np.array([[of_conic[0], factor / 2 * of_conic[1]], [factor / 2 * of_conic[1], of_conic[2]]])
     D = -Q @ H @ Q
     return np.array([[D[0, 0], 2 * D[0, 1], D[1, 1]]])
@@ -223,8 +199,8 @@ def by_covariance(of_conic, factor):
 
 halved, patched = (off(by_covariance(kept * [1, whole, 1], 2), right) for whole in (1, 2))
 print(
-    f"conic:  B's derivative kept halved and doubled later is off by {halved:.0e}; "
-    f"the patch (kept whole, still doubled) by {patched:.0%}"
+    f"conic:  the derivative of B stored halved and doubled later has an error of {halved:.0e}; "
+    f"the patch (stored whole, still doubled) of {patched:.0%}"
 )
 
 lens = around(1, 64)[0]
@@ -245,26 +221,26 @@ G = np.array([[g[0, 0], g[0, 1] / 2], [g[0, 1] / 2, g[0, 2]]])
 slopes = 2 * G @ A @ V
 f, z = lens["focal"][0], point[0, 2]
 told = -np.sum(slopes[:, :2] * A[:, :2]) / z
-told += slopes[0, 2] * 2 * f * high / z**2  # as public code has it
+told += slopes[0, 2] * 2 * f * high / z**2  # as in public code
 told += slopes[1, 2] * 2 * f * (point[0, 1] / z) / z**2
 mended = told - slopes[0, 2] * f * high / z**2
 print(
-    f"clamp:  by t_z, outside: differences {by_depth:.4f}, "
+    f"clamp:  d / d t_z, outside: finite differences {by_depth:.4f}, "
     f"the formula of public code {told:.4f}, "
-    f"with the clamped branch of its own {mended:.4f}"
+    f"with a separate clamped branch {mended:.4f}"
 )
 
 # %% [markdown]
 # ## The C++ core
-# Its picture and derivatives beside yours; then the same fit, with your `densify`, on photographs
-# as large as `--core-pixels`, drawn by the core.
+# Its image and derivatives beside yours; then the same fit, with your `densify`, on photographs of
+# `--core-pixels`, rendered by the core.
 
 # %%
 Y0 = 0.28209479177387814
 
 
 def of_the_core():
-    """`picture` by the core; raises where there is none."""
+    """`picture` by the core; raises if it is not installed."""
     splat = importlib.import_module("photograd.splats.splatting")
     cameras = importlib.import_module("photograd.capture.camera")
 
@@ -306,20 +282,21 @@ try:
 except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
     print("core not installed")
 else:
-    scene = {**found, "colors": np.maximum(found["colors"], 0.01)}  # the core's are not negative
+    scene = {
+        **found,
+        "colors": np.maximum(found["colors"], 0.01),
+    }  # those of the core are not negative
     (mine_shown, mine_back), (core_shown, core_back) = (
         draw(scene, camera, BACKGROUND) for draw in (mine.picture, core)
     )
     d_shown = draws.uniform(-1.0, 1.0, mine_shown.shape)
     mine_d, core_d = mine_back(d_shown), core_back(d_shown)
     worst = max(off(mine_d[key], core_d[key]) for key in (*mine.RATES, "background"))
-    print(
-        f"core:   pictures differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}"
-    )
+    print(f"core:   images differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}")
     wider, kept_back = option("core-pixels", 200), mine.picture
     sharp = [(each, photograph(each)) for each in around(2 * count, wider)]
     mine.picture, before = core, time.perf_counter()
-    # The core sums with signs before it takes sizes, so less is left of a pull.
+    # The core sums signed contributions first, so its statistics are smaller.
     mine.THRESHOLD, limit = mine.THRESHOLD / 4, mine.SMALL
     mine.SMALL = limit / 2
     many, _ = mine.fit(

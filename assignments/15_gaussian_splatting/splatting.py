@@ -1,34 +1,54 @@
-"""3D Gaussian splatting: a scene of fuzzy ellipsoids, its pictures, and the way back.
+"""3D Gaussian splatting: rendering a scene of 3D Gaussians, and its backward pass.
 
 A scene is a dict of arrays with a row for each Gaussian, and every number may take any value:
 
     "means"             (N, 3), meters, in the world
     "log_scales"        (N, 3), logarithms of the standard deviations along its axes, in meters
     "quats"             (N, 4), quaternions (w, x, y, z) of any length above zero
-    "opacity_logits"    (N,), the opacity in its middle is 1 / (1 + exp(-logit))
-    "colors"            (N, 3), as pictures show them
+    "opacity_logits"    (N,), the opacity at the center is 1 / (1 + exp(-logit))
+    "colors"            (N, 3), as in the images
 
 A *camera* is a dict: "camera_from_world" (3, 4), a rotation W and a translation b that take a point
 p to t = W p + b with x to the right, y down, z forward; "focal" and "center", (2,) each, in pixels
-along x and y; "width" and "height". The middle of pixel (row, column) is (column + 1/2, row + 1/2).
+along x and y; "width" and "height". The center of pixel (row, column) is (column + 1/2, row + 1/2).
 
 Your tasks are six functions, one section of the handout each; `photograd course check 15` tells
-how far you are. Five of them return, behind their values, a function `back`: given the derivative
-of a loss by the values, it returns the derivatives of that loss by what the function was given. The
+how far you are. Five of them return, after their values, a function `back`: given the derivative of
+a loss with respect to the values, it returns the derivatives with respect to the arguments. The
 other functions are given and stay as they are. All numbers are float64.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated, Any
+
 import numpy as np
 
+# Arrays and their shapes; float64 where nothing else is said.
+Vectors = Annotated[np.ndarray, "N 3"]
+Quaternions = Annotated[np.ndarray, "N 4"]
+Covariances = Annotated[np.ndarray, "N 3 3"]
+PerGaussian = Annotated[np.ndarray, "N"]
+ScreenPoints = Annotated[np.ndarray, "N 2"]
+ScreenCovariances = Annotated[np.ndarray, "N 3"]  # xx, xy, yy
+Pixels = Annotated[np.ndarray, "P 2"]
+Alphas = Annotated[np.ndarray, "N P"]
+Colors = Annotated[np.ndarray, "N 3"]
+Shown = Annotated[np.ndarray, "P 3"]
+Color = Annotated[np.ndarray, "3"]
+Source = Annotated[np.ndarray, "M"]  # int64
+Scene = dict[str, np.ndarray]
+Camera = dict[str, Any]
+Back = Callable[..., Any]  # a backward pass
+
 LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
-MARGIN = 0.15  # of the picture's size: how far outside of it slopes are still taken where they are
-NEAR = 0.01  # meters; Gaussians that are closer are not drawn
+MARGIN = 0.15  # of the image size: how far outside the image J is not clamped
+NEAR = 0.01  # meters; nearer Gaussians are culled
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
-FAINT = 0.02  # opacity below which a Gaussian is dropped
+FAINT = 0.02  # opacity below which a Gaussian is pruned
 SMALL = 0.06  # meters; longer ones are split, the others cloned
-THRESHOLD = 0.002  # of the pressure
+THRESHOLD = 0.002  # of the positional gradient statistics
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this factor
 TILE = 16  # pixels
 RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
@@ -42,7 +62,7 @@ CROSS = np.array(
 )
 
 
-def covariance(quats, log_scales):
+def covariance(quats: Quaternions, log_scales: Vectors) -> tuple[Covariances, Back]:
     """The covariances of Gaussians.
 
     Args:
@@ -51,7 +71,7 @@ def covariance(quats, log_scales):
 
     Returns:
         (cov, back): (N, 3, 3), symmetric; back(d_cov) returns (d_quats, d_log_scales), and each of
-        the nine numbers of d_cov counts by itself. Handout equations (4) to (8).
+        the nine numbers of d_cov is a derivative of its own. Handout equations (4) to (8).
     """
     # >>> solution 15.1
     length = np.linalg.norm(quats, axis=1, keepdims=True)
@@ -75,20 +95,22 @@ def covariance(quats, log_scales):
 
 
 def depths(means, camera):
-    """Given: how far in front of the camera means lie, along its axis; (N,)."""
+    """Given: the depths (N,) of means along the axis of the camera, in meters."""
     view = camera["camera_from_world"]
     return means @ view[2, :3] + view[2, 3]
 
 
 def limits(camera):
-    """Given: (low, high), (2,) each: where t_x / t_z and t_y / t_z are held for the slopes."""
+    """Given: (low, high), (2,) each, to which t_x / t_z and t_y / t_z are clamped in J."""
     size = np.array([camera["width"], camera["height"]], np.float64)
     low = (-MARGIN * size - camera["center"]) / camera["focal"]
     return low, ((1 + MARGIN) * size - camera["center"]) / camera["focal"]
 
 
-def project(means, cov, camera):
-    """Gaussians as the camera sees them.
+def project(
+    means: Vectors, cov: Covariances, camera: Camera
+) -> tuple[ScreenPoints, ScreenCovariances, PerGaussian, Back]:
+    """Means and covariances of Gaussians, projected to the screen.
 
     Args:
         means: (N, 3), all in front of the camera.
@@ -122,19 +144,21 @@ def project(means, cov, camera):
     # <<< solution
 
 
-def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
-    """How much of each pixel's light each splat takes.
+def screen_alpha(
+    mean2d: ScreenPoints, cov2d: ScreenCovariances, opacity_logits: PerGaussian, pixels: Pixels
+) -> tuple[Alphas, Back]:
+    """The opacity of each splat in each pixel.
 
     Args:
         mean2d: (N, 2), in pixels along x and y.
         cov2d: (N, 3), xx, xy, yy, in pixels squared; LOW_PASS is still to be added.
         opacity_logits: (N,).
-        pixels: (P, 2), places on the screen.
+        pixels: (P, 2), points on the screen.
 
     Returns:
-        (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, pull),
-        and pull, (N, 2), sums the absolute values of what single pixels add to d_mean2d. Handout
-        equations (15) to (21).
+        (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, pull);
+        pull (N, 2) is the absolute gradient, the sum over pixels of the absolute values of their
+        contributions to d_mean2d. Handout equations (15) to (21).
     """
     # >>> solution 15.3
     S = cov2d + np.array([LOW_PASS, 0, LOW_PASS])
@@ -158,18 +182,20 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
     # <<< solution
 
 
-def composite(alpha, colors, depth, background):
-    """Splats over one another, nearest first.
+def composite(
+    alpha: Alphas, colors: Colors, depth: PerGaussian, background: Color
+) -> tuple[Shown, Back]:
+    """Alpha compositing of splats, front to back.
 
     Args:
         alpha: (N, P), below 1.
         colors: (N, 3).
-        depth: (N,); the smaller is in front, of equal ones the row that comes first.
-        background: (3,), what is behind all of them.
+        depth: (N,); the smaller is in front, of equal ones the earlier row.
+        background: (3,), the color behind all splats.
 
     Returns:
-        (shown, back): (P, 3); back(d_shown) returns (d_alpha, d_colors, d_background), rows in the
-        order in which they came. Handout equations (22) to (25).
+        (shown, back): (P, 3); back(d_shown) returns (d_alpha, d_colors, d_background), rows in
+        their original order. Handout equations (22) to (25).
     """
     # >>> solution 15.4
     order = np.argsort(depth, kind="stable")
@@ -191,19 +217,21 @@ def composite(alpha, colors, depth, background):
     # <<< solution
 
 
-def render(gaussians, camera, pixels, background):
-    """What some pixels show of a scene.
+def render(
+    gaussians: Scene, camera: Camera, pixels: Pixels, background: Color
+) -> tuple[Shown, Back]:
+    """Render some pixels of a scene.
 
     Args:
-        gaussians: N of them; those that are not farther than NEAR in front are not drawn.
+        gaussians: N of them; those that are not farther than NEAR in front are culled.
         camera: see above.
-        pixels: (P, 2), places on the screen.
+        pixels: (P, 2), points on the screen.
         background: (3,).
 
     Returns:
-        (shown, back): (P, 3); back(d_shown) returns a dict with the derivatives by all five arrays
-        of the scene, by "background" (3,), and "pull" (N, 2); rows that are not drawn have zeros.
-        Handout equations (26) and (27).
+        (shown, back): (P, 3); back(d_shown) returns a dict with the derivatives with respect to all
+        five arrays of the scene and "background" (3,), and the absolute gradient "pull" (N, 2);
+        culled rows have zeros. Handout equations (26) and (27).
     """
     # >>> solution 15.5
     drawn = depths(gaussians["means"], camera) > NEAR
@@ -228,18 +256,20 @@ def render(gaussians, camera, pixels, background):
     # <<< solution
 
 
-def densify(gaussians, pressure, rng, most):
-    """Clone, split and drop Gaussians.
+def densify(
+    gaussians: Scene, pressure: PerGaussian, rng: np.random.Generator, most: int
+) -> tuple[Scene, Source]:
+    """Density control: clone, split and prune Gaussians.
 
     Args:
         gaussians: N of them; these arrays must not change.
-        pressure: (N,), how much the pictures pulled at each.
-        rng: a numpy.random.Generator, asked once: standard_normal((2 K, 3)) for K that are split.
-        most: there are never more Gaussians, unless more than that stay; faint ones leave first.
+        pressure: (N,), positional gradient statistics: mean length of the absolute gradient.
+        rng: a numpy.random.Generator, used once: standard_normal((2 K, 3)) for K that are split.
+        most: the largest number of Gaussians, unless more than that stay after pruning.
 
     Returns:
-        (gaussians, source): the new scene, and (M,), integers: the row that each was before, or -1
-        for one that is new. Handout equations (28) to (32).
+        (gaussians, source): the new scene, and (M,), integers: the old row of each, or -1 for a new
+        one. Handout equations (28) to (32).
     """
     # >>> solution 15.6
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
@@ -264,7 +294,7 @@ def densify(gaussians, pressure, rng, most):
 
 
 def reach(gaussians, camera):
-    """Given: (low, high), (N, 2) each: outside of this box alpha is below ALPHA_MIN."""
+    """Given: (low, high), (N, 2) each: outside this box alpha is below ALPHA_MIN."""
     ahead = depths(gaussians["means"], camera) > NEAR
     low, high = np.full((len(ahead), 2), np.inf), np.full((len(ahead), 2), -np.inf)
     visible = {key: values[ahead] for key, values in gaussians.items()}
@@ -278,7 +308,7 @@ def reach(gaussians, camera):
 
 
 def picture(gaussians, camera, background):
-    """Given: all pixels by `render`, TILE x TILE of them at a time, with what can reach them.
+    """Given: all pixels by `render`, in tiles of TILE x TILE, each with the splats that cover it.
 
     Returns:
         (shown, back): (H, W, 3); back as that of `render`.
@@ -309,7 +339,7 @@ def picture(gaussians, camera, background):
 
 
 class Adam:
-    """Steps of Adam for a scene, as in assignment 01, with beta 0.9 and 0.99."""
+    """Adam for a scene, as in assignment 01, with beta1 = 0.9 and beta2 = 0.99."""
 
     def __init__(self, gaussians):
         self.m = {key: np.zeros_like(values) for key, values in gaussians.items()}
@@ -317,7 +347,7 @@ class Adam:
         self.k = 0
 
     def step(self, gaussians, gradient):
-        """The scene after one step; the given one stays as it is."""
+        """The scene after one step; the given one does not change."""
         self.k += 1
         moved = {}
         for key, values in gaussians.items():
@@ -328,7 +358,7 @@ class Adam:
         return moved
 
     def follow(self, source):
-        """Rows keep their moments when a scene has changed; new ones begin with none."""
+        """Old rows keep their moments after `densify`; those of new rows are zero."""
         for moments in (self.m, self.v):
             for key, values in moments.items():
                 old = (source >= 0).reshape(-1, *[1] * (values.ndim - 1))
@@ -336,20 +366,20 @@ class Adam:
 
 
 def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
-    """Given: fit a scene to photographs, one of them in each step.
+    """Given: fit a scene to photographs, one of them per step.
 
     Args:
-        gaussians: where the descent starts.
-        views: a list of pairs of a camera and a picture (H, W, 3).
-        steps: how many.
+        gaussians: the initial scene.
+        views: a list of pairs of a camera and an image (H, W, 3).
+        steps: the number of steps.
         rng: a numpy.random.Generator.
         background: (3,).
-        most: the number of Gaussians never exceeds this; 0: it stays as it is.
-        every: steps between two changes of the number, in the first two thirds of the fit.
+        most: the largest number of Gaussians; 0: no density control.
+        every: steps between two calls of `densify`, in the first two thirds of the fit.
         watch: called with (step, gaussians, loss) before each step, or None.
 
     Returns:
-        (gaussians, losses): losses (steps,), of the picture that each step saw.
+        (gaussians, losses): losses (steps,), of the image of each step.
     """
     adam, losses = Adam(gaussians), np.zeros(steps)
     total, times = np.zeros(len(gaussians["means"])), np.zeros(len(gaussians["means"]))
@@ -362,7 +392,7 @@ def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
             watch(step, gaussians, losses[step])
         gradient = back(2 * error / error[..., 0].size)
         pull = np.linalg.norm(gradient["pull"], axis=1)
-        # The loss is a mean over pixels: with this factor a threshold holds for any picture's size.
+        # The loss is a mean over pixels: with this factor a threshold holds for any image size.
         total += pull * max(camera["width"], camera["height"]) / 2
         times += pull > 0
         gaussians = adam.step(gaussians, gradient)

@@ -20,6 +20,8 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);
+    photograd::bind_network(m);
+    photograd::bind_neural(m);
     photograd::bind_sh(m);
     photograd::bind_texture(m);
     photograd::bind_octree(m);

@@ -24,6 +24,8 @@ void bind_reference(py::module_& m);
 void bind_sdf(py::module_& m);
 void bind_path(py::module_& m);
 void bind_sampling(py::module_& m);
+void bind_network(py::module_& m);
+void bind_neural(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
 void bind_octree(py::module_& m);

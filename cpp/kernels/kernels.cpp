@@ -6,6 +6,7 @@
 #include "kernels/gather_sparse_sh.inl"
 #include "kernels/march_dense.inl"
 #include "kernels/march_sparse_sh.inl"
+#include "kernels/perceptron.inl"
 #include "kernels/principled.inl"
 #include "kernels/sample_rgb.inl"
 #include "kernels/sh_rgb.inl"
@@ -28,6 +29,8 @@ extern const Kernels table{
     .march_sparse_sh_backward = &march_sparse_sh_backward,
     .march_sparse_sh_weights = &march_sparse_sh_weights,
     .march_sparse_sh_gather = &march_sparse_sh_gather,
+    .perceptron_forward = &perceptron_forward,
+    .perceptron_backward = &perceptron_backward,
     .principled_values = &principled_values,
     .principled_values_backward = &principled_values_backward,
 };

@@ -4,6 +4,7 @@
 
 #include "kernels/march_dense.h"
 #include "kernels/march_sparse_sh.h"
+#include "kernels/perceptron.h"
 #include "kernels/principled.h"
 #include "kernels/sample_rgb.h"
 #include "kernels/sh_rgb.h"
@@ -34,6 +35,8 @@ struct Kernels {
     void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
+    void (*perceptron_forward)(const PerceptronBlock&);
+    void (*perceptron_backward)(const PerceptronBlock&, const PerceptronBackward&);
     /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is
     /// added to d_parameters (5,) then.
     void (*principled_values)(const PrincipledArgs&, std::int64_t begin, std::int64_t end,

@@ -17,10 +17,13 @@ __all__: list[str] = [
     "CellTable",
     "DeltaBsdf",
     "EnvironmentSampler",
+    "HashSettings",
     "MarchSettings",
+    "NeuralSettings",
     "Octree",
     "Op",
     "PathGeometry",
+    "PerceptronShape",
     "PhaseFunction",
     "PhotonMap",
     "PreparedRays32",
@@ -58,20 +61,32 @@ __all__: list[str] = [
     "exp",
     "expm1",
     "fields",
+    "frequency_encode",
+    "frequency_encode_backward",
+    "hash_encode",
+    "hash_encode_backward",
     "instruction_set",
     "lights",
     "log1p_unit",
     "march",
     "march_backward",
+    "march_neural",
+    "march_neural_backward",
     "march_sparse_sh",
     "march_sparse_sh_backward",
     "max_samples",
     "mip_level",
     "mip_shapes",
+    "neural_densities",
+    "neural_direction_numbers",
     "normalized_diffusion",
     "normalized_diffusion_backward",
+    "one_blob_encode",
+    "one_blob_encode_backward",
     "ops",
     "order_by_depth",
+    "perceptron_backward",
+    "perceptron_forward",
     "phases",
     "philox4x32",
     "place_samples",
@@ -768,6 +783,41 @@ class PhotonMap:
         (N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.
         """
 
+class PerceptronShape:
+    def __init__(
+        self,
+        inputs: typing.SupportsInt | typing.SupportsIndex,
+        widths: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        hidden: typing.SupportsInt | typing.SupportsIndex,
+        output: typing.SupportsInt | typing.SupportsIndex,
+        skip: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def parameters(self) -> int: ...
+
+class HashSettings:
+    def __init__(
+        self,
+        dimensions: typing.SupportsInt | typing.SupportsIndex,
+        resolutions: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        log2_rows: typing.SupportsInt | typing.SupportsIndex,
+        features: typing.SupportsInt | typing.SupportsIndex,
+        smoothstep: bool,
+    ) -> None: ...
+    @property
+    def levels(self) -> list[tuple[int, int, int, bool]]: ...
+    @property
+    def rows(self) -> int: ...
+
+class NeuralSettings:
+    def __init__(
+        self,
+        hash: HashSettings | None,
+        octaves: typing.SupportsInt | typing.SupportsIndex,
+        density: PerceptronShape,
+        color: PerceptronShape,
+    ) -> None: ...
+
 class TexturePlan:
     """
     Points sorted by tile, with their colors.
@@ -1334,6 +1384,36 @@ def expm1(x: numpy.ndarray) -> numpy.ndarray:
     The portable exp(x) - 1 on a flat array.
     """
 
+def frequency_encode(
+    points: numpy.ndarray,
+    octaves: typing.SupportsInt | typing.SupportsIndex,
+    features: numpy.ndarray,
+) -> None: ...
+def frequency_encode_backward(
+    points: numpy.ndarray,
+    octaves: typing.SupportsInt | typing.SupportsIndex,
+    d_features: numpy.ndarray,
+    d_points: numpy.ndarray,
+) -> None: ...
+def hash_encode(
+    settings: HashSettings, table: numpy.ndarray, points: numpy.ndarray, features: numpy.ndarray
+) -> None:
+    """
+    Writes features (N, levels F) of points (N, D) in the unit cube.
+    """
+
+def hash_encode_backward(
+    settings: HashSettings,
+    table: numpy.ndarray,
+    points: numpy.ndarray,
+    d_features: numpy.ndarray,
+    d_table: numpy.ndarray,
+    d_points: numpy.ndarray | None,
+) -> None:
+    """
+    Adds to d_table, and to d_points unless None.
+    """
+
 def instruction_set() -> str:
     """
     Name of the kernels in use: baseline, v3 or v4.
@@ -1368,6 +1448,32 @@ def march_backward(
 ) -> None:
     """
     Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.
+    """
+
+def march_neural(
+    settings: NeuralSettings,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    occupancy: numpy.ndarray | None,
+    march: MarchSettings,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+) -> tuple[typing.Any, ...]:
+    """
+    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None.
+    """
+
+def march_neural_backward(
+    settings: NeuralSettings,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    occupancy: numpy.ndarray | None,
+    march: MarchSettings,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
+) -> None:
+    """
+    Adds to d_parameters, and to d_rays unless None.
     """
 
 def march_sparse_sh(
@@ -1416,6 +1522,17 @@ def mip_shapes(
     Height and width of every level of a mip map.
     """
 
+def neural_densities(
+    settings: NeuralSettings,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    march: MarchSettings,
+    points: numpy.ndarray,
+    sigma_t: numpy.ndarray,
+) -> None:
+    """
+    Writes extinctions (N,), 1/m, at points (N, 3) of the unit cube.
+    """
+
 def normalized_diffusion(rows: numpy.ndarray, fit: str) -> numpy.ndarray:
     """
     R (N,) in 1/m^2 of rows (N, 3): radius, albedo, mean free path.
@@ -1428,9 +1545,42 @@ def normalized_diffusion_backward(
     Adds to d_rows (N, 3) for d_values (N,).
     """
 
+def one_blob_encode(
+    points: numpy.ndarray, bins: typing.SupportsInt | typing.SupportsIndex, features: numpy.ndarray
+) -> None: ...
+def one_blob_encode_backward(
+    points: numpy.ndarray,
+    bins: typing.SupportsInt | typing.SupportsIndex,
+    d_features: numpy.ndarray,
+    d_points: numpy.ndarray,
+) -> None: ...
 def order_by_depth(depth: numpy.ndarray, far_first: bool) -> numpy.typing.NDArray[numpy.uint32]:
     """
     Rows (N,) uint32 by depth (N,) float64, none below 0; equals keep their order.
+    """
+
+def perceptron_backward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    inputs: numpy.ndarray,
+    d_outputs: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_inputs: numpy.ndarray | None,
+    fused: bool = True,
+) -> None:
+    """
+    Adds to d_parameters; writes d_inputs unless None.
+    """
+
+def perceptron_forward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    inputs: numpy.ndarray,
+    outputs: numpy.ndarray,
+    fused: bool = True,
+) -> None:
+    """
+    Writes outputs of inputs (N, shape's). fused: by the kernel, for float32.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
@@ -1950,6 +2100,7 @@ delta_bsdfs: dict[str, typing.Any]
 fields: tuple[typing.Any, ...] = ("dense_grid", "tiny_network")
 lights: dict[str, typing.Any]
 max_samples: int = 262144
+neural_direction_numbers: int = 16
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any]
 sampled_lights: dict[str, typing.Any]

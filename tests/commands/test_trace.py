@@ -39,7 +39,7 @@ def test_a_built_in_scene_becomes_pictures(photograd: Photograd, tmp_path: Path)
     assert float(done.result()["noise"].split()[0]) > 0
     image = read_exr(out)
     assert image.shape == (16, 16, 4)
-    assert image[..., 0].max() > 5  # the lamp
+    assert image[..., 0].max() > 5  # the light
     preview = np.asarray(Image.open(out.with_suffix(".png")))
     assert preview.shape == (16, 16, 3)
     assert preview.max() == 255

@@ -199,7 +199,7 @@ class NoVisibility(SunlitMedium):
 
 
 class Swapped(SunlitMedium):
-    """Takes the derivative by one factor for that by the other."""
+    """Exchanges the derivatives with respect to the two factors."""
 
     def render_backward(self, context: Any, d_outputs: Outputs) -> dict[str, Any]:
         d = super().render_backward(context, d_outputs)
@@ -207,7 +207,7 @@ class Swapped(SunlitMedium):
 
 
 class NoPhase(SunlitMedium):
-    """Forgets the phase function on the way back into the volume."""
+    """Forgets the phase function in the backward pass of the volume."""
 
     def render_backward(self, context: Any, d_outputs: Outputs) -> dict[str, Any]:
         even = replace(context, p=np.ones_like(context.p))

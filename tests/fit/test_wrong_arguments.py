@@ -13,7 +13,7 @@ import photograd
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
 from photograd.fields import DenseGrid
-from photograd.fitting import Fit, FitOptions, options_for
+from photograd.fitting import Fit, FitOptions, density_gradient, options_for
 from photograd.fitting.drawing import render_field
 from photograd.representation import REGISTERED, Outputs, Representation, register
 
@@ -73,6 +73,16 @@ CALLS: dict[str, tuple[Callable[[], Any], type[Error], str]] = {
         lambda: photograd.fit("photos", "octree_sh", start_from="model"),  # type: ignore[arg-type]
         DtypeError,
         r"^fit: start_from: expected a Model, got str \(load_model reads one\)",
+    ),
+    "model for a field": (
+        lambda: density_gradient(model(), scene.capture(), seed=0),  # type: ignore[arg-type]
+        DtypeError,
+        r"^density_gradient: field: .*, got Model \(pass the .field of a Model\)",
+    ),
+    "views for a capture": (
+        lambda: density_gradient(scene.truth(), scene.capture().train, seed=0),  # type: ignore[arg-type]
+        DtypeError,
+        r"^density_gradient: capture: expected a Capture, got tuple",
     ),
     "group": (
         lambda: Fit.start(scene.capture(), scene.options()).mean_gradient("density", 8),

@@ -123,7 +123,8 @@ def test_docstrings_become_restructured_text(text: str, rst: str) -> None:
 
 
 def test_a_property_has_no_type_before_its_colon() -> None:
-    assert docstrings.to_rst(["All views: three."], is_property=True) == ["", "All views: three."]
+    lines = docstrings.to_rst(["All views: three."], is_property=True)
+    assert lines == ["..", "", "All views: three."]
 
 
 def test_files_of_the_core_that_docstrings_name_are_there() -> None:

@@ -18,7 +18,13 @@ from support.words import (
 )
 
 PYTHON = ROOT / "python"
-SPOKEN = ("python", "docs", "bench", "tools")  # folders whose comments and docstrings are read
+# Folders whose comments and docstrings are read.
+SPOKEN = ("python", "docs", "bench", "tools", "assignments", "tests")
+# Texts of the course that hold a banned phrase, and why.
+EXEMPT_TEXTS: dict[str, str] = {
+    "assignments/07_path_tracing/assignment.toml": "vocabulary: `lamp` is a name of the solution",
+    "assignments/07_path_tracing/mutants.toml": "replaced code: `lamp` is a name of the solution",
+}
 
 
 def python_texts() -> dict[str, str]:
@@ -69,6 +75,20 @@ def test_python_prose_speaks_the_language_of_the_field() -> None:
         for line in banned_phrases(relative(path), python_prose(path.read_text(encoding="utf-8")))
     ]
     assert found == []
+
+
+def course_texts() -> dict[str, str]:
+    """Handouts, questions, diagnoses, hints and manifests of all assignments, by path."""
+    paths = walk(ROOT / "assignments", {".md", ".toml", ".json"})
+    return {relative(path): TABLE_ROW.sub("", path.read_text(encoding="utf-8")) for path in paths}
+
+
+def test_texts_of_the_course_speak_the_language_of_the_field() -> None:
+    texts = course_texts()
+    assert len(texts) > 60, "the assignments are not found any more"
+    found = {path: banned_phrases(path, text) for path, text in texts.items()}
+    assert [line for path in found if path not in EXEMPT_TEXTS for line in found[path]] == []
+    assert [path for path in EXEMPT_TEXTS if not found.get(path)] == [], "no longer needed"
 
 
 def test_pages_speak_the_language_of_the_field() -> None:

@@ -1,4 +1,4 @@
-"""Derivatives by the texels of an environment map, alone and through samples."""
+"""Derivatives with respect to texels of an environment map, alone and through samples."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def test_points_even_over_the_area_do_not_have_the_density_of_the_solid_angle() 
 
 
 def test_solid_angle_is_less_noisy_than_area() -> None:
-    # A lamp of 2 m x 2 m half a meter above the floor, seen from below its corner.
+    # A light of 2 m x 2 m half a meter above the floor, seen from below its corner.
     corner, x, y = np.array([0.0, 0.5, 0.0]), np.array([2.0, 0, 0]), np.array([0, 0, 2.0])
     vertices = np.stack([corner, corner + x, corner + x + y, corner + y])
     lamps = (QuadLight(corner, x, y, COLOR), ByArea(corner, x, y))
@@ -187,7 +187,7 @@ def test_nothing_comes_from_behind_or_from_within(name: str) -> None:
     points = np.tile(place, (100, 1))
     samples = light.sample(np.tile(POINT, (100, 1)), square(100, seed=29))
     w = np.where(samples.pdf[:, None] > 0, samples.direction, [0.0, 0.6, 0.8])
-    for directions in (w, -w):  # from behind, -w would meet the lamp's back
+    for directions in (w, -w):  # from behind, -w would meet the light's back
         assert (light.sample(points, square(100, seed=28)).pdf == 0).all()
         assert (light.pdf(points, directions) == 0).all()
         assert (light.L(points, directions) == 0).all()

@@ -27,7 +27,7 @@ def inputs(degree: int, count: int) -> tuple[Any, Any, Any]:
 
 
 def all_results(degree: int, count: int, *, fused: bool, add: bool = False) -> list[Any]:
-    """Colors, and the derivatives by directions and coefficients."""
+    """Colors, and the derivatives with respect to directions and coefficients."""
     coefficients, d, w = inputs(degree, count)
     results = [np.full_like(w, 7), np.full_like(d, 7), np.full_like(coefficients, 7)]
     _core.sh_colors(d, coefficients, results[0], fused)

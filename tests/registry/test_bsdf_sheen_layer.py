@@ -1,4 +1,4 @@
-"""Sheen over a base that gets what it leaves: energy, limits, mistakes that would gain light."""
+"""Sheen over a scaled base layer: energy conservation, limits, mistakes that violate it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_sheen_takes_from_the_base_what_it_returns(roughness: float) -> None:
         # The smaller of what both directions leave is at most what this one leaves.
         assert sheen < total < sheen + (1 - sheen) * base + 5e-3
         assert total < 1.003
-    # Without the scaling the sum gains light.
+    # Without the scaling the sum is not energy-conserving.
     grazing = [
         albedo("sheen", {"color": WHITE, "roughness": roughness}, 0.05)[0],
         albedo("gltf", METAL, 0.05)[0],

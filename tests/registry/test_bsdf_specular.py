@@ -1,4 +1,4 @@
-"""A varnish that is weakened and colored by hand: what it is at the ends of its ranges."""
+"""A coating with a strength and a color: its limits at the ends of their ranges."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_metal_is_not_varnished() -> None:
 
 
 def test_a_factor_scales_the_reflection_at_all_angles() -> None:
-    # Over black the varnish is alone; at grazing angles it is white, whatever its color.
+    # Over black only the coating reflects; at grazing angles it is white, whatever its color.
     black: dict[str, Any] = {"base_color": [0.0] * 3, "roughness": 0.5}
     color = {"specular_color_factor": [1.0, 0.5, 0.1]}
     whole = MODEL.f(dielectric(**black, **color), WO, WI)
@@ -56,7 +56,7 @@ def test_a_factor_scales_the_reflection_at_all_angles() -> None:
 
 
 def test_the_ground_loses_what_the_strongest_channel_reflects() -> None:
-    # Red varnish over white: no channel gets more light than red, so nothing turns green or blue.
+    # A red coating over white: no channel gets more light than red, so nothing turns green or blue.
     white: dict[str, Any] = {"base_color": [1.0] * 3, "eta": 2.0}
     red = MODEL.f(dielectric(**white, specular_color_factor=[1.0, 0.0, 0.0]), WO, WI)
     plain = MODEL.f(dielectric(**white), WO, WI)

@@ -249,8 +249,8 @@ def test_greatest_weights_are_those_of_all_samples() -> None:
     most = np.zeros(len(s.active), np.float32)
     parameters, rays = [s.place[g] for g in GROUPS], (*s.rays, *s.samples())
     _core.sparse_sh_weights(s.active.table, parameters, s.settings, rays, most)
-    # A voxel's gradient by its own density under L = sum of w says nothing of the greatest, so ask
-    # the samples: raise one color at a time and see which samples it reaches.
+    # The derivative of L = sum of w with respect to a voxel's density does not show the largest
+    # weight, so test the samples: raise one color at a time and see which samples it reaches.
     t0, samples = s.samples()
     shape = np.array(s.active.shape)
     rows = np.full(shape + 3, -1)

@@ -68,7 +68,7 @@ def test_weird_numbers_in_any_combination_leave_numbers(dtype: Any) -> None:
         rest = {"origins": found.origins, "directions": found.directions}
         for name, array in {**vars(picture), **found.gaussians, **rest}.items():
             assert not np.isnan(array).any(), (seed, name)
-            # The slope by a quaternion of length 1e-30 may be beyond what numbers can hold.
+            # The derivative with respect to a quaternion of length 1e-30 may overflow.
             assert name == "quats" or np.isfinite(array).all(), (seed, name)
     assert crossings > 1000
 

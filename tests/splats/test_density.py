@@ -215,7 +215,7 @@ def test_the_wish_for_few_and_small_ones_is_a_gradient() -> None:
 def test_grad2d_means_the_same_at_every_resolution() -> None:
     """The same scene and loss at 96 and at 192 pixels: less than a tenth is chosen otherwise.
 
-    Gradients by a pixel halve: a threshold on those would choose other Gaussians.
+    Gradients per pixel halve: a threshold on those would choose other Gaussians.
     """
     chosen, raw = [], []
     for size in (96, 192):

@@ -58,6 +58,7 @@ from photograd.transport import (
 )
 from photograd.transport.inverse.loss import loss_and_gradients
 
+from support.network_workload import networks
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes
 from tests.transport.scenes import any_material, bent_floor, stage
@@ -296,4 +297,4 @@ def paths() -> None:
     bake_ambient_occlusion(textured(), "floor", 4, spp=1, seed=1)
 
 
-PARTS = (numbers, representations, models, geometry, grids, textures, gaussians, paths)
+PARTS = (numbers, representations, models, geometry, grids, textures, gaussians, paths, networks)

@@ -1,4 +1,4 @@
-"""The lookup as it is written down, in NumPy and double precision, and its adjoint by np.add.at."""
+"""The texture lookup in NumPy and double precision, and its adjoint with np.add.at."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from tests.transport.test_alpha import checker, gray, shade
 SKY = Environment([0.55, 0.6, 0.8], [0.7, 0.6, 0.5], [0.4, 0.35, 0.3])
 BULB = PointLight([-0.9, 1.2, 0.9], [0.9, 0.8, 0.7])
 DIM = Environment([0.25, 0.2, 0.2], [0.2, 0.2, 0.2], [0.1, 0.1, 0.15])
-SOFT = [1.6, 1.4, 1.2]  # radiance of lamps: contrast is noise
+SOFT = [1.6, 1.4, 1.2]  # radiance of lights: contrast is noise
 COLORS = np.array([0.75, 0.55, 0.3])  # apart, so that tints matter
 OWN = {"exponent": 20.0, "iridescence_thickness": 400.0, "rotation": 0.6}
 OF_MODELS: dict[str, dict[str, Any]] = {  # what lies on top is seen better over something dark
@@ -50,7 +50,7 @@ def own(model: str) -> Material:
 
 
 def nook(material: Material) -> Scene:
-    """A ball on a floor, both of the material, under a lamp, a bulb and a colored sky.
+    """A ball on a floor, both of the material, under area light, point light and colored sky.
 
     Where light passes the material, the floor is gray.
     """
@@ -66,10 +66,10 @@ def nook(material: Material) -> Scene:
 
 
 def glint(material: Material) -> Scene:
-    """The place on a floor where a small lamp is mirrored, a ball of the same material beside it.
+    """The part of a floor that reflects a small light, a ball of the same material beside it.
 
-    Below the floor is another lamp, for what lets light pass. A lobe that gets wider or turns is
-    seen at once, while most light is asked for: little noise.
+    Below the floor is another light, for transmission. A lobe that gets wider or rotates shows at
+    once, and most light comes from light sampling: low variance.
     """
     shapes = (
         rectangle("floor", *FLOOR, "own"),
@@ -86,7 +86,7 @@ def fog(medium: Medium) -> Scene:
     """A box of the medium before a dark sky, with a bulb behind it: light that has been turned.
 
     So thin that more of it sends more light: where that has its maximum no derivative is left. A
-    floor and a lamp are around it.
+    floor and a light are around it.
     """
     scene = fog_box(medium, size=4)
     lamp = replace(scene.shapes[-1], emission=0.5 * np.array(SOFT))
@@ -98,7 +98,7 @@ def fog(medium: Medium) -> Scene:
 
 
 def veil() -> Scene:
-    """A card between lamp and floor whose coverage is painted."""
+    """A card between light and floor whose opacity is a texture."""
     painted = gray(0.8, textures={"alpha": TextureUse("t")})
     return shade(painted, size=4, textures={"t": checker()})
 

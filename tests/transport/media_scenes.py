@@ -50,7 +50,7 @@ def smoke(values: Any = None, **more: Any) -> Medium:
 
 
 def fog_box(medium: Medium = FOG, *, size: int = 8, sky: float | None = 0.3) -> Scene:
-    """A box of fog on a gray floor, under a lamp and perhaps a sky."""
+    """A box of fog on a gray floor, under a light and perhaps a sky."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         box("fog", [0, 0.7, 0], [1.8, 1.3, 1.8], BOUNDARY),
@@ -91,7 +91,7 @@ def ball_of(
 
 
 def haze(medium: Medium = FOG, *, size: int = 8) -> Scene:
-    """Haze without end, a clear ball of glass in it, a lamp and a point light."""
+    """Infinite haze, a clear ball of glass in it, an area light and a point light."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         SphereShape("ball", np.array([0.4, 0.4, 0.0]), 0.4, "glass"),

@@ -31,7 +31,7 @@ def stage(
     ball: bool = True,
     floor: Material = GRAY,
 ) -> Scene:
-    """A ball of a material on a gray floor, under a square lamp and perhaps an even sky."""
+    """A ball of a material on a gray floor, under a square light and perhaps an even sky."""
     shapes: list[Any] = [rectangle("floor", *FLOOR, "floor")]
     if ball:
         shapes.append(SphereShape("ball", np.array([0.0, 0.5, 0.0]), 0.5, "ball"))

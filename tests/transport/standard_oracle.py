@@ -128,7 +128,7 @@ def free(balls: Balls, k: Array, x: Array, wi: Array, reach: Array = np.inf) -> 
 
 
 def lamps_at(x: Array, lamps: Any) -> Any:
-    """(direction, irradiance of what faces it, distance) of each lamp at points (..., 3)."""
+    """(direction, irradiance of a surface that faces it, distance) of each light at (..., 3)."""
     for kind, place, color in lamps:
         if kind == "directional":
             wi = np.broadcast_to(unit(np.asarray(place, float)), x.shape)
@@ -142,7 +142,7 @@ def lamps_at(x: Array, lamps: Any) -> Any:
 def lamp_picture(
     balls: Balls, lamps: Any, camera: Any, *, spp: int, seed: int, form: Form = RIGHT
 ) -> Array:
-    """Direct light of lamps without size, black behind, (H, W, 3).
+    """Direct light of point lights, black background, (H, W, 3).
 
     Pixels are averaged over the points of samples that address (seed, pixel, sample) gives.
     """

@@ -19,7 +19,7 @@ from tests.transport.scenes import BLACK, GRAY, any_material, picture_and_gradie
 
 SPP = 4
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
-# Of the few paths of these tests, independent ones happen to leave the black lamp, too.
+# Of the few paths of these tests, independent ones happen to leave the black light, too.
 INDEPENDENT = PathOptions(max_depth=5, roulette_from=2, sampler="independent")
 
 
@@ -73,7 +73,7 @@ def test_black_surfaces_have_derivatives() -> None:
     gradient = backward(start, np.ones((6, 6, 3)))
     assert (gradient["materials.ball.albedo"] > 0).all()
     assert (gradient["materials.floor.albedo"] > 0).all()
-    nowhere = ("materials.black.albedo", "emission.lamp")  # the lamp is not in the picture
+    nowhere = ("materials.black.albedo", "emission.lamp")  # the light is not in the picture
     report = check_gradient(
         function, backward, start, seed=5, coordinates=3, directions=3, may_be_zero=nowhere
     )
@@ -140,7 +140,7 @@ def test_float_agrees_with_double(scene: Any) -> None:
     g, h = (t.render_backward(d, spp=8, seed=1) for t in tracers)
     for name in g:
         assert np.linalg.norm(h[name]) > 0
-        # Measured: 6e-5 of the lamp's albedo, 4e-5 of the index of glass, 4e-6 of all others.
+        # Measured: 6e-5 of the light's albedo, 4e-5 of the index of glass, 4e-6 of all others.
         assert np.linalg.norm(g[name] - h[name]) <= 1e-4 * np.linalg.norm(h[name]), name
 
 

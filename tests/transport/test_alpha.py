@@ -29,7 +29,7 @@ from tests.transport.test_textures import wall
 
 BARE = PathOptions("bsdf")
 OPTIONS = PathOptions(max_depth=6, roulette_from=3, sampler="independent")
-CARD = ([-1.0, 0.8, -1.0], [2.0, 0, 0], [0, 0, 2.0])  # between the lamp and the floor, faces down
+CARD = ([-1.0, 0.8, -1.0], [2.0, 0, 0], [0, 0, 2.0])  # between the light and the floor, faces down
 
 
 def gray(alpha: float, **more: Any) -> Material:
@@ -37,7 +37,7 @@ def gray(alpha: float, **more: Any) -> Material:
 
 
 def shade(card: Material | None, *, size: int = 6, sky: float | None = 0.3, **more: Any) -> Scene:
-    """A floor under a lamp, a card of a material between them."""
+    """A floor under a light, a card of a material between them."""
     shapes = [rectangle("floor", *FLOOR, "floor"), rectangle("lamp", *LAMP, "floor", [4, 3.5, 3])]
     materials = {"floor": GRAY}
     if card is not None:
@@ -84,7 +84,7 @@ def test_alphas_of_none_and_all_have_their_whole_derivative(alpha: float) -> Non
 def test_a_shadow_keeps_what_passes() -> None:
     # Light alone is asked, directly: the card takes its part of every sample, and of no other.
     options = PathOptions("light", max_depth=2)
-    # Row 4 sees the floor at z = 0.3 to 1.2, where all of the lamp is behind the card.
+    # Row 4 sees the floor at z = 0.3 to 1.2, where all of the light is behind the card.
     second = rectangle("second", [-1.5, 0.9, -1.5], [3, 0, 0], [0, 0, 3], "second")
     covered = shade(gray(0.3), sky=None)
     twice = replace(
@@ -119,7 +119,7 @@ def test_strategies_agree_behind_a_veil() -> None:
 
 
 def test_derivatives() -> None:
-    # The card is seen, and stands before lamp and sky; a second one has an alpha without texture.
+    # The card is seen, and stands before light and sky; a second one has an alpha without texture.
     material = gray(0.8, textures={"alpha": TextureUse("t")})
     scene = shade(material, textures={"t": checker()})
     second = rectangle("second", [-1.0, 0.4, -1.0], [2.0, 0, 0], [0, 0, 2.0], "sheet")

@@ -14,7 +14,7 @@ from tests.transport.test_textures import BARE, WALL, wall
 
 
 def lit(bent: NormalMap | None, towards: Any) -> float:
-    """How bright a gray wall is under one far, small lamp."""
+    """How bright a gray wall is under one far, small light."""
     camera = view(4, (0.0, 0.0, 3.0), (0.0, 0.0, 0.0))
     wall_shape = rectangle("wall", *WALL, "wall")
     direction = np.array(towards) / np.linalg.norm(towards)
@@ -55,7 +55,7 @@ def test_bent_normals_gain_no_light() -> None:
 
 
 def brushed(turned: bool, rotation: float) -> Any:
-    """A brushed wall between two lamps, and the noise; its u runs along x, or along y."""
+    """A brushed wall between two lights, and the noise; its u runs along x, or along y."""
     metal = {"f0": [0.9, 0.7, 0.5], "roughness": 0.3, "anisotropy": 0.8, "rotation": rotation}
     shape = rectangle("wall", *WALL, "wall")
     if turned:

@@ -47,7 +47,7 @@ def test_every_model_that_can_be_turned_is_brushed() -> None:
 
 
 def lit(model: str, quarters: int) -> tuple[Any, Any]:
-    """A wall beside a lamp, its texture coordinates turned; picture and noise."""
+    """A wall beside a light, its texture coordinates turned; picture and noise."""
     values = {**any_material(model, 0.5).values, **SHINY[model]}
     shape = rectangle("wall", *WALL, "wall")
     uv = np.asarray(shape.uv)

@@ -91,12 +91,12 @@ def test_direct_light_of_a_rectangle(strategy: str, heuristic: str) -> None:
 
 
 def test_a_mirror_shows_what_lies_behind() -> None:
-    # Camera above a mirror floor: the lamp's image, dimmed by the reflectance; nothing else shines.
+    # Camera above a mirror floor: the image of the light times the reflectance; nothing else emits.
     mirror = Material("mirror", {"reflectance": [0.9, 0.5, 0.1]})
     scene = stage(GRAY, ball=False, floor=mirror)
     camera = camera_at([0.0, 1.4, 2.0], [0.0, 0.0, 1.0], 1.0, 4, 4)
     found = PathTracer(scene).render(spp=4, seed=4, camera=camera).mean
-    # From (0, 1.4, 2) by y = 0 at z = 1: the mirrored ray passes y = 1.5 at z = -0.07, in the lamp.
+    # From (0, 1.4, 2) by y = 0 at z = 1: the reflected ray has y = 1.5 at z = -0.07, in the light.
     np.testing.assert_allclose(
         found, np.broadcast_to([4 * 0.9, 3.6 * 0.5, 3.2 * 0.1], (4, 4, 3)), rtol=1e-6
     )
@@ -144,7 +144,7 @@ def test_a_camera_within_a_solid_box_sees_its_inside() -> None:
 
 
 def test_no_light_leaks_through_closed_walls() -> None:
-    # A black room under a bright sky, with a lamp outside: nothing gets in, whatever the corner.
+    # A black room under a bright sky, with a light outside: nothing gets in, whatever the corner.
     room = box("room", [0, 0, 0], [2, 2, 2], "gray", inward=True)
     lamp = rectangle("lamp", *LAMP, "black", [1e6, 1e6, 1e6])
     for target in ([1, 1, 1], [-1, -1, 1], [1, 0, 0]):

@@ -58,7 +58,7 @@ def check(scene: Scene, options: PathOptions = OPTIONS, *, without: tuple[str, .
 
 @pytest.mark.parametrize("model", MODELS)
 def test_every_model_is_the_transpose_of_its_adjoint(model: str) -> None:
-    # The black lamp reflects nothing unless some path starts from it; the others must all count.
+    # The black light reflects nothing unless some path starts from it; the others must all count.
     check(stage(any_material(model), size=6, sky=0.4), without=("materials.black.albedo",))
 
 

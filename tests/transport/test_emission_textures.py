@@ -32,7 +32,7 @@ def sign(height: int = 3, width: int = 4) -> Texture:
 
 
 def room(*, size: int = 6, triangles: bool = False) -> Scene:
-    """A floor under a painted lamp: one rectangle, or six triangles of a strip."""
+    """A floor under a textured light: one rectangle, or six triangles of a strip."""
     floor = rectangle("floor", *FLOOR, "floor")
     lamp = rectangle("lamp", *LAMP, "black", [4.0, 3.0, 2.0])
     if triangles:
@@ -78,7 +78,7 @@ def test_strategies_agree(triangles: bool) -> None:
 
 
 def test_lights_are_asked_by_their_mean() -> None:
-    # Twice as much light in all of a second lamp's picture: it is asked twice as often.
+    # The texture of a second light has twice the power: it is sampled twice as often.
     scene = room()
     other = rectangle("other", [-0.6, 1.2, 0.8], [1.2, 0, 0], [0, 0, 1.2], "black", [4, 3, 2])
     textures = {**scene.textures, "bright": Texture(2 * scene.textures["sign"].values)}

@@ -1,4 +1,4 @@
-"""Cameras of glTF files: what they see, what is wrong with some, and pictures of the way back."""
+"""Cameras of glTF files: their images, invalid files, and images of files that are written."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_cameras_that_have_no_counterpart_are_named(tmp_path: Path) -> None:
 
 
 def stage() -> Scene:
-    """A cube on a floor under a point, a spot, parallel light and a lamp that shines."""
+    """A cube on a floor under a point, a spot, a directional and an area light."""
     paint = Material("gltf", {"base_color": [0.6, 0.5, 0.3], "metalness": 0.5, "roughness": 0.5})
     shapes = (
         rectangle("floor", [-3, 0, 3], [6, 0, 0], [0, 0, -6], "m"),
@@ -229,7 +229,7 @@ def test_a_scene_file_takes_camera_and_lights(tmp_path: Path) -> None:
     assert isinstance(spot, SpotLight)
     assert isinstance(sun, DirectionalLight)
     assert isinstance(higher, PointLight)
-    # A quarter turn about Y takes (x, y, z) to (z, y, -x); the numbers of the lamp stay.
+    # A quarter turn about Y takes (x, y, z) to (z, y, -x); the numbers of the light stay.
     np.testing.assert_allclose(point.position, [1.0, 4.0, -3.0], atol=1e-12)
     np.testing.assert_allclose(higher.position, [1.0, 9.0, -3.0], atol=1e-12)
     np.testing.assert_array_equal(point.intensity, [3.0, 2.0, 1.0])

@@ -1,4 +1,4 @@
-"""Lights of glTF files: the irradiance they make, what is wrong with some, and the way back."""
+"""Lights of glTF files: their irradiance, invalid files, and files that are written."""
 
 from __future__ import annotations
 

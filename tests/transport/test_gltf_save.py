@@ -206,7 +206,7 @@ def test_surroundings_and_unused_materials_are_named(tmp_path: Path) -> None:
     model, said = written(scene, tmp_path / "m.glb")
     assert said == ["m.glb: material 'spare': no shape has it, left out"]
     assert [s.name for s in model.shapes] == [s.name for s in scene.shapes]
-    # The file has the camera and the lamp, and the walls are as matt as before.
+    # The file has the camera and the light, and the walls are as matt as before.
     read = default_scene(model, "box", 16)
     assert len(read.shapes) == len(scene.shapes)
     found, expected = (PathTracer(s).render(spp=2, seed=1).mean for s in (read, scene))

@@ -61,7 +61,7 @@ def seen_irradiance(tracer: PathTracer, camera: Camera, albedo: Any, spp: int) -
 
 
 def covered(cover: Material, floor: Material = GRAY) -> Scene:
-    """A floor under a lamp, and a sheet between them whose inside is below."""
+    """A floor under a light, and a sheet between them whose inside is below."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         rectangle("cover", [-2, 0.9, 2], [4, 0, 0], [0, 0, -4], "cover"),

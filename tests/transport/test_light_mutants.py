@@ -33,7 +33,7 @@ AREA = 0.25
 
 @cache
 def tracer() -> PathTracer:
-    """A ball on a floor under a map, a point light and a lamp."""
+    """A ball on a floor under a map, a point light and an area light."""
     lights = (
         environment_map(),
         PointLight([0.8, 1.6, 0.9], [3.0, 2.5, 2.0]),
@@ -58,7 +58,7 @@ def paths() -> list[list[dict[str, Any]]]:
 
 @cache
 def probabilities() -> dict[str, float]:
-    """Of the map, the point light and the lamp."""
+    """Of the map, the point light and the area light."""
     entries, pmf = tracer()._geometry.choose_lights((np.arange(1000) + 0.5) / 1000)
     found = [float(pmf[entries == k][0]) for k in range(3)]
     assert sum(found) == pytest.approx(1.0)
@@ -123,7 +123,7 @@ def test_the_twin_agrees_with_the_core() -> None:
     core = tracer().render(spp=SPP, seed=SEED, options=OPTIONS).mean.reshape(-1, 3)
     np.testing.assert_allclose(right().reshape(-1, SPP, 3).mean(axis=1), core, rtol=1e-12)
     kinds = {v["nee_shape"] for path in paths() for v in path if v["nee_weight"] > 0}
-    assert kinds == {BACKGROUND, DELTA, 1}  # the lamp is the second mesh
+    assert kinds == {BACKGROUND, DELTA, 1}  # the light is the second mesh
 
 
 @pytest.mark.parametrize("wrong", WRONG)

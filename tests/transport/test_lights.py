@@ -172,7 +172,7 @@ def test_a_lamp_of_the_list_is_a_lamp_of_the_scene() -> None:
 
 
 def test_rectangles_are_sampled_by_solid_angle() -> None:
-    # Close under a lamp 1 / d^2 varies: points even over the area are noisier than directions.
+    # Close under a light 1 / d^2 varies: points even over the area are noisier than directions.
     lamp = np.array([[-0.6, 0.25, -0.6], [0.6, 0.25, -0.6], [0.6, 0.25, 0.6], [-0.6, 0.25, 0.6]])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     noise = []

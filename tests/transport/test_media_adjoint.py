@@ -51,7 +51,7 @@ def test_every_parameter_of_every_medium(name: str) -> None:
     gradient = backward(start, np.ones((5, 5, 3)))
     assert media
     assert all(np.abs(gradient[key]).max() > 1e-3 for key in media)
-    black = ("materials.black.albedo",)  # few paths leave the lamp
+    black = ("materials.black.albedo",)  # few paths leave the light
     report = check_gradient(
         function, backward, start, seed=2, coordinates=3, directions=2, may_be_zero=black
     )

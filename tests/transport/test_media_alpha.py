@@ -1,4 +1,4 @@
-"""Surfaces that cover only in part, beside media: a veil passes light on through both sides."""
+"""Surfaces with opacity in media: an occluder transmits light through both sides."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ COLOR = {"albedo": [0.3, 0.4, 0.5]}
 
 
 def veiled(card: Material | None, medium: Any = FOG, *, size: int = 4, **more: Any) -> Scene:
-    """A card through the middle of the fog, before the lamp and all that the camera sees of it."""
+    """A card through the middle of the fog, before the light and all that the camera sees of it."""
     scene = fog_box(medium, size=size)
     if card is None:
         return replace(scene, lights=(LIGHT,), **more)
@@ -57,7 +57,7 @@ def opaque() -> Material:
 
 @cache
 def picture(alpha: float | None, grid: bool, seed: int = 1) -> Accumulation:
-    """Of a veil of this alpha; -1: of an opaque card, None: of nothing there."""
+    """With an occluder of this alpha; -1: an opaque card, None: no card."""
     card = None if alpha is None else opaque() if alpha < 0 else gray(alpha)
     scene = veiled(card, smoke() if grid else FOG)
     options = replace(OPTIONS, max_depth=8, roulette_from=None)
@@ -91,7 +91,7 @@ def test_a_veil_before_everything_mixes_both_pictures() -> None:
 def veil_scene(alpha: float | None) -> Scene:
     """Black and before everything: what it hides, it hides; it lights nothing and shades nothing.
 
-    The ball of fog is lit from its own side of the veil.
+    The ball of fog is lit from its own side of the occluder.
     """
     ball = SphereShape("ball", np.array([0.0, 0.0, 0.0]), 0.5, BOUNDARY, interior="fog")
     shapes: tuple[Any, ...] = (ball,)
@@ -106,7 +106,7 @@ def veil_scene(alpha: float | None) -> Scene:
 
 
 def test_a_veil_in_ink_in_closed_form() -> None:
-    # Seen: (1 - a) exp(-sigma d). Lit: a floor behind two veils, in ink, by the sun above.
+    # Seen: (1 - a) exp(-sigma d). Lit: a floor behind two occluders, in ink, by the sun above.
     ink = with_interior(box("ink", [0, 0, 0], [2, 2, 2], BOUNDARY), "ink")
     veil = rectangle("veil", [-0.5, -0.5, 0.25], [1, 0, 0], [0, 1, 0], "veil")
     black = Material("lambert", {"albedo": [0.0] * 3, "alpha": 0.3})
@@ -170,7 +170,7 @@ def test_the_hole_of_a_surface_leads_into_its_interior() -> None:
 def test_strategies_agree_behind_a_veil(grid: bool) -> None:
     card = gray(0.4, textures={"alpha": TextureUse("t")})
     scene = veiled(card, smoke() if grid else FOG, textures={"t": checker()})
-    scene = replace(scene, lights=())  # lamp and sky can be met
+    scene = replace(scene, lights=())  # paths can hit light and sky
     found = {
         strategy: PathTracer(scene).render(
             spp=3000 if strategy == "bsdf" else 1000,

@@ -1,7 +1,7 @@
-"""Veils in fog, written wrong: all must die.
+"""Wrong occluders in fog: every mutant must be killed.
 
 As in test_media_mutants, a twin in NumPy sums up recorded paths forwards. It works out anew what
-covering in part does: to the picture, and to its derivative by alpha.
+covering in part does: to the image, and to its derivative with respect to alpha.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def product(steps: Any) -> Any:
 
 
 def cover(passed: bool, wrong: str | None) -> tuple[float, float]:
-    """The weight of a vertex on the card, and its derivative by alpha."""
+    """The weight of a vertex on the card, and its derivative with respect to alpha."""
     stays = 0.025 + 0.95 * ALPHA
     if wrong == "chance forgotten":
         stays = 0.5
@@ -68,7 +68,7 @@ def cover(passed: bool, wrong: str | None) -> tuple[float, float]:
 
 
 def walked(path: list[dict[str, Any]], card: int, wrong: str | None = None) -> tuple[Any, Any]:
-    """Radiance (3,) of a path, and its derivative by the card's alpha."""
+    """Radiance (3,) of a path, and its derivative with respect to the alpha of the card."""
     L, d_L, beta, d = np.zeros(3), np.zeros(3), np.ones(3), np.zeros(3)
     for v in path:
         arrival = product(v["events"]) / np.mean(v["pdf_channels"])
@@ -111,7 +111,7 @@ def test_the_twin_agrees_with_the_core(name: str) -> None:
     seen = {
         v["nee_alpha_transmittance"] for path in paths(name) for v in path if v["nee_weight"] > 0
     }
-    assert len(seen) >= 2  # lights without a veil, and behind one
+    assert len(seen) >= 2  # lights without an occluder, and behind one
     twin = summed(name)
     picture = tracer(name).render(spp=SPP, seed=SEED, options=OPTIONS).mean.reshape(-1, 3)
     assert picture.min() > 0.01

@@ -90,7 +90,7 @@ def medium_of(name: str) -> dict[str, Any]:
 
 
 def product(steps: Any, name: str, wrong: str | None, *, shadow: bool) -> tuple[Any, Any]:
-    """The product of a segment's steps, and its derivative by sigma_t, channel by channel."""
+    """The product of the steps of a segment, and its derivative w.r.t. sigma_t, per channel."""
     m = medium_of(name)
     sigma, value, slope = m["sigma_t"], np.ones(3), np.zeros(3)
     for kind, length, x in steps:
@@ -126,7 +126,7 @@ def segment_weight(v: dict[str, Any], shares: Any, wrong: str | None) -> Any:
 
 
 def walked(path: list[dict[str, Any]], name: str, wrong: str | None = None) -> tuple[Any, Any, Any]:
-    """Radiance (3,) of a path, and its derivatives by sigma_t (3,) and by g (3,)."""
+    """Radiance (3,) of a path, and its derivatives with respect to sigma_t (3,) and g (3,)."""
     g = float(medium_of(name)["g"])
     L, d_sigma, d_g = np.zeros(3), np.zeros(3), np.zeros(3)
     beta, by_sigma, by_g, shares = np.ones(3), np.zeros(3), np.zeros(3), np.ones(3)

@@ -24,7 +24,7 @@ OPTIONS = PathOptions(max_depth=8, roulette_from=2)
 # Few bright pixels carry much of the gradient: roulette, which looks at the path alone, adds noise.
 ADJOINT = PathOptions(max_depth=8, roulette_from=None)
 SIZE, SPP = 256, 8
-ALPHA_SPREAD = 2.8e-4  # of the derivative by alpha with SPP, measured over 12 seeds
+ALPHA_SPREAD = 2.8e-4  # of the alpha derivative with SPP, measured over 12 seeds
 
 
 def blocks(image: Any, size: int) -> Any:

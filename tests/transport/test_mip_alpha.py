@@ -1,4 +1,4 @@
-"""Alpha through mip maps, where paths meet it: derivatives by texels of all levels."""
+"""Alpha with mipmaps in paths: derivatives with respect to texels of all levels."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.usefixtures("core")
 
 
 def scenes() -> list[Scene]:
-    """A veil before an even sky, and one in front of a floor, which it shades as well."""
+    """An occluder before a uniform sky, and one before a floor, which it shadows as well."""
     return [
         filtered(wall(VEIL, {"t": checker()}, 6)),
         filtered(shade(VEIL, textures={"t": checker()})),

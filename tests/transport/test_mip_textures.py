@@ -1,4 +1,4 @@
-"""Mip maps in paths: which level a path sees, what that is worth, and the derivative by texels."""
+"""Mipmaps in paths: the level of a path, its effect, and the derivative of texels."""
 
 from __future__ import annotations
 

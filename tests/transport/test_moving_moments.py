@@ -52,7 +52,7 @@ def brushed() -> Scene:
 
 
 def filled(medium: Any) -> Scene:
-    """A ball of a medium that flies past a veil that does."""
+    """A moving ball of a medium behind a moving occluder."""
     scene = moving(alpha=True)
     fog = SphereShape(
         "fog",

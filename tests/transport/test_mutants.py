@@ -49,7 +49,7 @@ def balance(p: float, q: float) -> float:
 
 @cache
 def tracer() -> PathTracer:
-    """A gray and a black floor tile, a ball of glass, a lamp and a dim sky."""
+    """A gray and a black floor tile, a ball of glass, a light and a dim sky."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         rectangle("tile", [-0.5, 0.02, 1.0], [1.0, 0, 0], [0, 0, -0.6], "tile"),
@@ -88,7 +88,7 @@ def emission_weight(path: list[dict[str, Any]], k: int, wrong: str | None) -> fl
     if p == 0 or q == 0 or wrong in ("both counted", "lamp seen in full"):
         return 1.0
     if wrong == "measures mixed":
-        q *= 0.1  # cos / d^2 of some lamp
+        q *= 0.1  # cos / d^2 of some light
     return power(p, q)
 
 
@@ -149,7 +149,7 @@ def test_the_twin_agrees_with_the_core() -> None:
     gradient = tracer().render_backward(ones, spp=SPP, seed=SEED, options=OPTIONS)
     for shape, name in ((0, "floor"), (1, "tile")):
         twin_gradient = sum(albedo_gradient(path, shape) for path in paths()) / SPP
-        if name == "tile":  # the lamp has the same material
+        if name == "tile":  # the light has the same material
             twin_gradient = twin_gradient + sum(albedo_gradient(p, 2) for p in paths()) / SPP
         assert np.abs(twin_gradient).min() > 0.1
         core_gradient = gradient[f"materials.{name}.albedo"]

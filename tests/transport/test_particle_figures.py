@@ -38,7 +38,7 @@ def test_what_one_number_does_to_every_pixel() -> None:
 def test_camera_paths_leave_the_shadow_empty_and_particles_fill_it() -> None:
     tracer = PathTracer(caustic.scene(8))
     landed = caustic.table_irradiance(tracer, 20, 1 << 18).mean.sum(axis=2)
-    # The middle of the shadow, on the line from the lamp through the ball.
+    # The middle of the shadow, on the line from the light through the ball.
     towards = caustic.CENTER - caustic.LAMP
     middle = caustic.LAMP - towards * (caustic.LAMP[1] / towards[1])
     to_table = middle[[0, 2]]

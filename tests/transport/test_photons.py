@@ -73,7 +73,7 @@ def test_a_caustic_keeps_its_power() -> None:
 def test_pictures_agree_with_path_tracing_but_for_the_blur() -> None:
     tracer = PathTracer(cornell_box(10))
     truth = tracer.render(spp=256, seed=1).mean
-    # Without the lamp, whose edges few samples draw well.
+    # Without the light, whose edges few samples draw well.
     seen = tracer.render(spp=256, seed=1, options=PathOptions(max_depth=1)).mean.max(axis=2) == 0
     assert seen.sum() == 96
     errors = []

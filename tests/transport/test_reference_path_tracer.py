@@ -25,7 +25,7 @@ from tests.transport.test_media_particles import SCENES as MEDIA_SCENES
 from tests.transport.test_strategies import assert_same_mean
 
 SIZE, SPP = 8, 2048
-NOISY = "fog behind a veil"  # a shadow ray passes the veil, a path passes or stays
+NOISY = "fog behind a veil"  # shadow rays are attenuated by the occluder, paths at random
 
 
 def reference(tracer: PathTracer, spp: int, options: PathOptions, seed: int = 9) -> Accumulation:

@@ -19,7 +19,7 @@ SIZE, SPP = 12, 8
 
 
 def few_bright(seed: int = 3) -> Any:
-    """A cotangent of which four pixels hold most, as a loss of squares gives for a lamp."""
+    """A cotangent of which four pixels hold most, as a loss of squares gives for a light."""
     d = np.random.default_rng(seed).uniform(0.5, 1, (SIZE, SIZE, 3)) / 50
     d[5, 2:6] *= 1000
     return d

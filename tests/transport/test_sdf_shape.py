@@ -87,7 +87,7 @@ def within_glass() -> Scene:
 
 
 def hollow_room() -> Scene:
-    """A lamp and a camera in a hollow ball, whose inside is lit again and again."""
+    """A light and a camera in a hollow ball, whose inside reflects many times."""
     room = SphereShape("room", np.zeros(3), 1.0, "gray")
     lamp = SphereShape("lamp", np.array([0.3, 0.2, -0.5]), 0.15, "black", np.array([3.0, 2.0, 1.0]))
     camera = view(8, (0.2, 0.1, 0.6), (0, 0, -1))

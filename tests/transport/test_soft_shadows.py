@@ -16,7 +16,7 @@ from tests.transport.scenes import BLACK, FLOOR, GRAY, STRATEGY_SCENES
 from tests.transport.test_closed_forms import polygon_irradiance
 
 LAMP = QuadLight([-0.5, 2.0, -0.5], [1.0, 0, 0], [0, 0, 1.0], [3.0, 3.0, 3.0])
-# At half the height, everything with x < 0 is covered: from (p, 0, 0), the lamp shows where x > -p.
+# At half the height x < 0 is covered: from (p, 0, 0), the light is visible where x > -p.
 COVER = rectangle("cover", [-5, 1, -5], [5, 0, 0], [0, 0, 10], "black")
 
 
@@ -29,7 +29,7 @@ def shadowed(p: float) -> PathTracer:
 
 
 def irradiance(p: float, left: float) -> float:
-    """Of the part of the lamp right of x = left."""
+    """Of the part of the light right of x = left."""
     corners = [[left, 2.0, -0.5], [0.5, 2.0, -0.5], [0.5, 2.0, 0.5], [left, 2.0, 0.5]]
     return 3.0 * polygon_irradiance(corners, np.array([p, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
 
@@ -41,7 +41,7 @@ def seen(p: float, spp: int, sampler: str, seed: int) -> float:
 
 @pytest.mark.parametrize("p", [-0.7, -0.35, -0.1, 0.0, 0.2, 0.4, 0.7])
 def test_the_penumbra_of_an_edge(p: float) -> None:
-    # B06: within 1 % of the open lamp with 1024 shadow rays.
+    # B06: within 1 % of the open light with 1024 shadow rays.
     open_lamp = 0.5 / np.pi * irradiance(p, -0.5)
     expected = 0.5 / np.pi * irradiance(p, min(max(-0.5, -p), 0.5)) if p > -0.5 else 0.0
     assert abs(seen(p, 1024, "sobol", 1) - expected) < 0.01 * open_lamp

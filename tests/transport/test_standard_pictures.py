@@ -65,9 +65,9 @@ def shown(image: Any) -> Any:
 
 @functools.cache
 def lamp_pictures(dtype: Any = np.float32) -> tuple[Any, Balls, Scene]:
-    """The core's picture under two lamps, 4 samples a pixel.
+    """The image of the core under two lights, 4 samples per pixel.
 
-    The sum of two: a path asks one lamp, and which one would be chance.
+    The sum of two: a path samples one light, at random.
     """
     balls, image = rack(ROUGHNESS, METALNESS), 0.0
     options = PathOptions(max_depth=2, roulette_from=None, sampler="independent")
@@ -89,7 +89,7 @@ def test_balls_under_lamps_are_those_of_the_second_implementation() -> None:
     assert lamp_decibels(RIGHT) > LEAST_DECIBELS  # 127.6
     found, balls, described = lamp_pictures(np.float64)
     expected = lamp_picture(balls, LAMPS, described.camera, spp=4, seed=3)
-    # Black behind, and lamps' reflections far brighter than 1, which count as they are here.
+    # Black background, and reflections of lights far brighter than 1, which are not clipped.
     assert (expected.sum(axis=-1) == 0).mean() > 0.2
     assert expected.max() > 100
     assert psnr(found, expected) > 100  # 114.5; places on spheres are float

@@ -60,15 +60,15 @@ def test_light_bsdf_and_both_agree(name: str) -> None:
         for seed, strategy in enumerate(("light", "bsdf", "mis"))
     }
     assert found["mis"].mean.mean() > 0.01
-    # Few paths find a small lamp by chance, or a lamp through frosted glass.
+    # Few paths find a small light by chance, or a light through frosted glass.
     power = 0.2 if name in ("room", "frosted glass") else 0.1
     assert_same_mean(found["mis"], found["light"], 2 * len(STRATEGY_SCENES), power)
     assert_same_mean(found["mis"], found["bsdf"], 2 * len(STRATEGY_SCENES), power)
 
 
 def test_both_heuristics_agree_and_beat_each_strategy_alone() -> None:
-    # A large lamp and a glossy floor: the mirror image of the lamp is where light sampling is bad,
-    # the diffuse rest where BSDF sampling is.
+    # A large light and a glossy floor: light sampling is bad at the mirror image of the light, BSDF
+    # sampling at the diffuse rest.
     tracer = PathTracer(stage(any_material("gltf", 0.2), floor=any_material("gltf", 0.3)))
     noise = {}
     found = []

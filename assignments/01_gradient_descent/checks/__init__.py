@@ -1,1 +1,1 @@
-"""Public checks of assignment 01: descent in one and many dimensions."""
+"""Public checks of assignment 01: gradient descent in one and many dimensions."""

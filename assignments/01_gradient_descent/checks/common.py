@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance, Truth, asks
@@ -8,8 +8,8 @@ EXACT = Tolerance(1e-12, "right answers differ by at most 3e-15, wrong ones by 4
 
 
 def walk(n, *axes):
-    """What a walk of n steps returns: points, values, verdict."""
-    names = ("the points", "the values", "the verdict")
+    """What a run of n steps returns: points, values, flag."""
+    names = ("the points", "the values", "the flag")
     return Items(Array((n + 1, *axes)), Array((n + 1,)), Truth(), names=names)
 
 

@@ -32,7 +32,7 @@ def a_parabola_contracts_by_one_factor(t):
         distance = (x0 - center) * (1.0 - reach) ** np.arange(n + 1)
         t.close("the points", x, center + distance)
         t.close("the values", loss, 0.5 * curvature * (np.asarray(x) - center) ** 2)
-        t.require(not wrong, "the verdict is True for a walk that converges")
+        t.require(not wrong, "the flag is True for a run that converges")
 
 
 @check(
@@ -42,7 +42,7 @@ def a_parabola_contracts_by_one_factor(t):
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )
 def the_verdict_changes_at_the_bound(t):
-    """Just below tau = 2 / lambda the walk closes in, just above it flies off and says so."""
+    """Just below tau = 2 / lambda the run converges, just above it diverges and says so."""
     curvature, center = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(3.0, 5.0))
 
     def go(reach, x0, n=30):
@@ -58,13 +58,13 @@ def the_verdict_changes_at_the_bound(t):
 
     for x0 in (center - 0.5, center + 0.5):
         x, _, wrong = go(1.99, x0)
-        t.require(abs(x[-1] - center) < 0.45, "below the bound the walk must close in")
-        t.require(not wrong, "below the bound the verdict must be False")
+        t.require(abs(x[-1] - center) < 0.45, "below the bound the run must converge")
+        t.require(not wrong, "below the bound the flag must be False")
         x, _, wrong = go(2.01, x0)
-        t.require(abs(x[-1] - center) > 0.55, "above the bound the walk must fly off")
-        t.require(wrong, "above the bound the verdict must be True")
+        t.require(abs(x[-1] - center) > 0.55, "above the bound the run must diverge")
+        t.require(wrong, "above the bound the flag must be True")
     _, _, wrong = go(0.5, center)
-    t.require(not wrong, "a walk that starts in the minimum and stays has not gone wrong")
+    t.require(not wrong, "a run that starts in the minimum and stays has not gone wrong")
     _, _, wrong = go(2.1, center + 0.5, 1)
     t.require(wrong, "a single step that leads higher has gone wrong")
     # Two half parabolas, the left one steeper: down from 0.5 to -0.1, then up again to 0.38.
@@ -77,4 +77,4 @@ def the_verdict_changes_at_the_bound(t):
         2,
         returns=walk(2),
     )
-    t.require(not wrong, "the walk ends lower than it began, so the verdict should be False")
+    t.require(not wrong, "the run ends lower than it began, so the flag should be False")

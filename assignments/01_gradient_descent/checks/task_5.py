@@ -9,7 +9,7 @@ check = checks_for(calls=("adam",), tolerance=EXACT)
 
 
 def scripted(gradients):
-    """A gradient that hands out the given rows in turn, and the list of points it was asked at."""
+    """A gradient that returns the given rows in turn, and the list of points of its calls."""
     rows, asked = iter(gradients), []
 
     def grad(x):
@@ -29,7 +29,7 @@ def scripted(gradients):
     hint="With a constant gradient m_hat = g and v_hat = g^2 in every step, Eq. (21).",
 )
 def a_constant_slope_gives_steps_of_length_tau(t):
-    """Down a plane every step is tau g / (|g| + eps), however steep the plane is."""
+    """For a linear function every step is tau g / (|g| + eps), however steep the plane is."""
     g = np.array([1e3, -1.0, 1e-3, -1e-7]) * t.rng.uniform(1.0, 2.0, 4)
     n, tau = 12, 0.05
     x = t.call("adam", lambda _: g, np.zeros(4), tau, n, returns=Array((n + 1, 4)))

@@ -34,7 +34,7 @@ class Patient:
     hint="The right-hand side of Eq. (22) falls with tau, along the direction you were given.",
 )
 def the_step_is_the_first_that_keeps_its_promise(t):
-    """The step length satisfies Armijo's rule, and the one tried before it does not."""
+    """The step size satisfies Armijo's rule, and the one tried before it does not."""
     refused = 0
     for _ in range(8):
         f, grad, _ = rotated_bowl(t.rng, t.rng.uniform(0.5, 20.0, 3))
@@ -51,14 +51,14 @@ def the_step_is_the_first_that_keeps_its_promise(t):
             promised = tau * float(d @ grad(x))
             return f(d * tau + x) <= f(x) + c * promised
 
-        t.require(tau > 0.0, "the step length must be positive")
+        t.require(tau > 0.0, "the step size must be positive")
         count = round(math.log(tau) / math.log(shrink))
-        t.close("the step length, as a power of shrink", tau, shrink**count)
-        t.require(keeps(shrink**count), "the step length breaks Armijo's rule")
+        t.close("the step size, as a power of shrink", tau, shrink**count)
+        t.require(keeps(shrink**count), "the step size breaks Armijo's rule")
         if count:
             refused += 1
             t.require(not keeps(shrink ** (count - 1)), "a longer step would have been accepted")
-    t.require(refused >= 4, "too few steps were refused")
+    t.require(refused >= 4, "too few steps were rejected")
     # f(1) = -1/4 is the bound itself, in binary numbers without rounding.
     tau = t.call(
         "backtracking",
@@ -80,11 +80,11 @@ def the_step_is_the_first_that_keeps_its_promise(t):
     hint="Raise ValueError unless the slope along d is negative; NaN is not negative.",
 )
 def a_direction_uphill_is_refused(t):
-    """A direction that leads uphill, nowhere, or nobody knows where raises ValueError."""
+    """A direction that is uphill, zero or NaN raises ValueError."""
     f, grad, vectors = rotated_bowl(t.rng, np.array([1.0, 3.0]))
     unknown, x = np.full(2, math.nan), vectors[:, 0]
     for case, slope_of, d in (
-        ("d leads uphill", grad, x),
+        ("d is uphill", grad, x),
         ("d is zero", grad, np.zeros(2)),
         ("the gradient is NaN", lambda _: unknown, np.ones(2)),
     ):

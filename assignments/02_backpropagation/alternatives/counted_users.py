@@ -1,7 +1,5 @@
 """Counts of users: a value is done when all its users are (Kahn's algorithm); arrays inside."""
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np
@@ -75,7 +73,7 @@ def topo_order(root):
 
 
 def backward(root, seed=1.0):
-    """An array of gradients by place in the order."""
+    """An array of gradients, indexed by position in the order."""
     order = topo_order(root)
     place = {node: k for k, node in enumerate(order)}
     gradients = np.zeros(len(order))

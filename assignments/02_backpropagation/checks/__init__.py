@@ -1,5 +1,5 @@
 """Public checks of assignment 02.
 
-A gate is asked for its value and for the slopes that it noted, so that a mistake there does not
-count against `backward`; graphs made by hand, with their order given, do the same for `backward`.
+Values and local derivatives of gates are tested separately, so that a mistake there does not count
+against `backward`; graphs made by hand, with a given order, do the same for `backward`.
 """

@@ -1,15 +1,15 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Integer, Number, Record, Tolerance
 
 EXACT = Tolerance(
-    1e-12, "three ways to write the gates differ by 2e-16; the nearest wrong slope is off by 0.1"
+    1e-12, "three ways to write the gates differ by 2e-16; the nearest wrong derivative by 0.1"
 )
 DIFFERENCES = Tolerance(
     1e-6,
-    "differences leave 3e-8 at most, since graphs where they leave more are not asked; "
-    "wrong slopes and orders are off by 1e-2 and more",
+    "finite differences leave 3e-8 at most, since graphs where they leave more are not asked; "
+    "wrong local derivatives and orders are off by 1e-2 and more",
 )
 STEP = 1e-5
 SLOPES = Record({"value": Number(), "slopes": Array((2,)), "strangers": Integer(0)})
@@ -20,7 +20,7 @@ def gates_spec(n):
 
 
 def differences_of_gate(t, op, a, b):
-    """Slopes (N, 2) by central differences of the gate's own values; column 1 is 0 without b."""
+    """Local derivatives (N, 2) by central differences of values; column 1 is 0 without b."""
     n = len(a)
     slopes = np.zeros((n, 2))
     for column in range(1 if b is None or op == "pow" else 2):
@@ -35,9 +35,11 @@ def differences_of_gate(t, op, a, b):
 
 
 def require_slopes(t, op, a, b=None):
-    """A gate's slopes against differences of its own values."""
+    """A gate's local derivatives against finite differences of its own values."""
     found = t.call("adapters.gates", op, a, b, returns=gates_spec(len(a)))
-    t.close(f"slopes of {op}", found["slopes"], differences_of_gate(t, op, a, b), DIFFERENCES)
+    t.close(
+        f"local derivatives of {op}", found["slopes"], differences_of_gate(t, op, a, b), DIFFERENCES
+    )
 
 
 def away(rng, low, high, n):
@@ -46,7 +48,7 @@ def away(rng, low, high, n):
 
 
 def random_edges(rng, n, uses=3):
-    """A graph of n nodes by hand: uses of earlier nodes with slopes of either sign."""
+    """A graph of n nodes by hand: uses of earlier nodes with local derivatives of either sign."""
     edges = [[]]
     for k in range(1, n):
         count = int(rng.integers(0 if k < n // 3 else 1, uses + 1))
@@ -66,5 +68,5 @@ def reachable(edges, root):
 
 
 def ordered(n):
-    """What `adapters.chain` returns."""
+    """Result of `adapters.chain`."""
     return Record({"order": Array((2 * n + 1,), "i8"), "gradient": Number()})

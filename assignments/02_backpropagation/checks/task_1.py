@@ -7,7 +7,12 @@ from .common import EXACT, SLOPES, away, gates_spec, require_slopes
 check = checks_for(calls=("Value.__add__", "Value.__mul__"))
 
 
-@check("02.1.values", points=2, tolerance=EXACT, sole="tells a wrong value from a wrong slope")
+@check(
+    "02.1.values",
+    points=2,
+    tolerance=EXACT,
+    sole="tells a wrong value from a wrong local derivative",
+)
 def sums_and_products_have_their_value(t):
     """Sums and products have the right value, with a plain number on either side too."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 0.5, 3.0, 6)
@@ -18,7 +23,7 @@ def sums_and_products_have_their_value(t):
 
 @check("02.1.slopes", points=4, sole="names the gate; whole graphs fail too")
 def slopes_of_sums_and_products(t):
-    """A sum and a product note the slope towards each input (against differences)."""
+    """A sum and a product store the local derivative of each input (against finite differences)."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 4.0, 6.0, 6)
     for op in ("add", "mul"):
         require_slopes(t, op, a, b)
@@ -31,9 +36,9 @@ def slopes_of_sums_and_products(t):
     sole="the same value on both sides; the worked graph fails too, for its x * x",
 )
 def the_same_value_twice(t):
-    """x + x has the slope 2 towards x, and x * x has the slope 2 x."""
+    """For x + x the local derivatives sum to 2, for x * x to 2 x."""
     x = float(t.rng.uniform(1.5, 3.0))
     found = t.call("adapters.gate", "add", x, None, True, returns=SLOPES)
-    t.close("slope of x + x", found["slopes"].sum(), 2.0, reveal=True)
+    t.close("local derivative of x + x", found["slopes"].sum(), 2.0, reveal=True)
     found = t.call("adapters.gate", "mul", x, None, True, returns=SLOPES)
-    t.close("slope of x * x", found["slopes"].sum(), 2 * x, reveal=True)
+    t.close("local derivative of x * x", found["slopes"].sum(), 2 * x, reveal=True)

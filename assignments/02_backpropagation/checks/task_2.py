@@ -10,7 +10,7 @@ check = checks_for(calls=("Value.maximum",), tolerance=EXACT)
 
 @check("02.2.routes", points=4, sole="names the gate; whole graphs fail too")
 def the_larger_input_takes_all(t):
-    """maximum has the larger value, and only the larger input gets a slope."""
+    """maximum has the larger value, and only the larger input gets a local derivative."""
     a = away(t.rng, 0.5, 3.0, 8)
     b = a + away(t.rng, 0.5, 1.0, 8)
     found = t.call("adapters.gates", "max", a, b, returns=gates_spec(8))
@@ -20,9 +20,9 @@ def the_larger_input_takes_all(t):
 
 @check("02.2.tie", points=3)
 def a_tie_is_settled(t):
-    """At a tie the second input takes all; no differences here, they would give 1/2 and 1/2."""
+    """At a tie the second input gets the derivative; finite differences would give 1/2 each."""
     x = float(t.rng.uniform(1.5, 3.0))
     found = t.call("adapters.gate", "max", x, x, returns=SLOPES)
-    t.close("slopes at a tie", found["slopes"], [0.0, 1.0], reveal=True)
+    t.close("local derivatives at a tie", found["slopes"], [0.0, 1.0], reveal=True)
     found = t.call("adapters.gate", "max", x, None, True, returns=SLOPES)
-    t.close("slope of maximum(x, x)", found["slopes"].sum(), 1.0, reveal=True)
+    t.close("local derivative of maximum(x, x)", found["slopes"].sum(), 1.0, reveal=True)

@@ -83,7 +83,7 @@ def chain(n):
 
 WORK_PER_NODE = 20  # right walks need 1 or 2; all paths through a ladder of 12 need over 300
 WORK = Record({"reads": Integer(0), "comparisons": Integer(0), "too_deep": Truth()})
-TOO_DEEP = "a stack of your own has no limit; Python's stack of calls has one"
+TOO_DEEP = "an explicit stack has no limit; Python limits the depth of recursion"
 LISTED = "marks in a list are searched from the front; use a set"
 UNMARKED = "read the inputs of each value once: mark what you have seen"
 

@@ -11,7 +11,7 @@ RUN = "adapters.run_graph"
 
 
 def path_sums(edges, root, seed):
-    """Gradients by all nodes, as the solution of a linear system.
+    """Gradients of all nodes, as the solution of a linear system.
 
     Node j gets the seed if it is the root, and from each k that uses it W[k, j] times what k got.
     """
@@ -28,7 +28,7 @@ def program_34():
     return [["add", 0, 1], ["mul", 0, 0], ["add", 2, 3]]
 
 
-WORKED = (  # program, inputs, value, gradients by the inputs
+WORKED = (  # program, inputs, value, gradients of the inputs
     ([["add", 0, 1], ["mul", 3, 2]], [3.0, 4.0, 5.0], 35.0, [5.0, 5.0, 7.0]),
     ([["add", 0, 1]], [15.0, 12.0], 27.0, [1.0, 1.0]),
     ([["mul", 0, 1]], [15.0, 12.0], 180.0, [12.0, 15.0]),
@@ -66,7 +66,7 @@ def run_by_hand(t, edges, roots, seeds, default_seed=False):
     "02.5.adds", points=4, sole="gates and order are given here, so that the loop alone is at fault"
 )
 def contributions_of_all_uses_are_added(t):
-    """Through each use of a value its gradient grows by slope times the user's gradient."""
+    """Each use of a value adds local derivative times the user's gradient to its gradient."""
     for _ in range(5):
         edges = random_edges(t.rng, 14)
         got = run_by_hand(t, edges, [13], [1.0], default_seed=True)
@@ -206,7 +206,7 @@ def trusted_program(rng):
     tolerance=None,
 )
 def expressions_agree_with_differences(t):
-    """Gradients of ten random expressions agree with differences of your own forward values."""
+    """Gradients of ten random expressions agree with finite differences of your own values."""
     for _ in range(10):
         program, x, _, _ = trusted_program(t.rng)
         n = len(program) + len(x)
@@ -217,7 +217,7 @@ def expressions_agree_with_differences(t):
             return t.call("adapters.forward_values", program, points, returns=Array((len(points),)))
 
         t.close(
-            "gradients by the inputs",
+            "gradients of the inputs",
             found["gradients"][: len(x)],
             central(forward, x),
             DIFFERENCES,

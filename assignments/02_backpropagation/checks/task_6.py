@@ -19,7 +19,7 @@ VERDICT = Number(finite=False)
 
 
 def smooth(rng, n):
-    """A function (value, gradient) of n numbers with all kinds of slopes, and a place."""
+    """A function (value, gradient) of n numbers with all kinds of derivatives, and a point."""
     w, m = away(rng, 0.5, 2.0, n), away(rng, 0.3, 1.0, (n, n))
 
     def f(x):

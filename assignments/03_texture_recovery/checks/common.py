@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 from photograd_course.grading import Tolerance
 from photograd_course.grading.generators import cell_centers

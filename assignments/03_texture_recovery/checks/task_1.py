@@ -28,7 +28,7 @@ def a_center_gives_its_texel(t):
     sole="says that the weights are right, on a picture one can draw",
 )
 def a_ramp_stays_a_ramp(t):
-    """A texture that rises evenly to the right and downwards is sampled without error."""
+    """A texture that is linear to the right and downward is sampled without error."""
     shape = (4, 7)
     across, down = t.rng.uniform(1.0, 2.0, 2) * np.array([1.0, -2.0])
     T = (centers(shape) @ [across, down]).reshape(*shape, 1)

@@ -13,10 +13,10 @@ check = checks_for(calls=("bilinear_sample_adjoint",), tolerance=EXACT)
     "03.2.single",
     points=3,
     hint="handout, equation (7): g times the weight that the texel had",
-    sole="asks about one sample, without the forward function",
+    sole="tests one sample, without the forward function",
 )
 def one_sample_is_spread_around_its_place(t):
-    """What one sample hands out sums to g, and is balanced around the sample's place."""
+    """What one sample scatters sums to g, and is balanced around the sample's point."""
     shape = (4, 6)
     for _ in range(5):
         uv = t.rng.uniform([0.5 / 6, 0.5 / 4], [1 - 0.5 / 6, 1 - 0.5 / 4], (1, 2))
@@ -34,7 +34,7 @@ def one_sample_is_spread_around_its_place(t):
     "03.2.transpose",
     points=5,
     needs=("bilinear_sample",),
-    hint="handout, section 2: the same weights as forwards, from sample to texel",
+    hint="handout, section 2: the same weights as in the forward pass, from sample to texel",
     sole="the definition of an adjoint",
 )
 def the_adjoint_is_the_transpose(t):
@@ -58,7 +58,7 @@ def the_adjoint_is_the_transpose(t):
     sole="names the mistake of a scatter that forgets",
 )
 def repeated_places_add_up(t):
-    """A place measured ten times hands out the sum of its ten numbers."""
+    """A point measured ten times scatters the sum of its ten numbers."""
     shape = (5, 3)
     uv = t.rng.uniform(0.0, 1.0, (4, 2))
     g = t.rng.uniform(0.5, 1.5, (40, 2))
@@ -77,7 +77,7 @@ def repeated_places_add_up(t):
 @check(
     "03.2.edge",
     points=2,
-    hint="clamp as forwards (which of u, v with which side?); equal indices add up",
+    hint="clamp as in the forward pass (which of u, v with which side?); equal indices are summed",
     sole="says that only the border is wrong",
 )
 def a_corner_gets_it_all(t):

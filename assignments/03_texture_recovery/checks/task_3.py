@@ -19,7 +19,7 @@ QUADRATIC = Tolerance(
     needs=("bilinear_sample",),
     tolerance=EXACT,
     hint="handout, equation (9): sum over channels, divide by N",
-    sole="asks about the loss alone",
+    sole="tests the loss only",
 )
 def the_loss_of_a_constant(t):
     """Constant texture, constant measurements: the loss is the squared distance of two colors."""

@@ -12,7 +12,7 @@ check = checks_for(
 )
 
 ESTIMATE = Tolerance(
-    0.02, "300 rounds leave 2e-15, the nearest wrong one (curvature_missing_two) is off by 0.5"
+    0.02, "300 iterations leave 2e-15, the nearest wrong one (curvature_missing_two) is off by 0.5"
 )
 
 
@@ -20,29 +20,29 @@ ESTIMATE = Tolerance(
     "03.4.rounds",
     points=4,
     tolerance=EXACT,
-    hint="handout, equations (11) to (13): what stands after 0 rounds, after 1?",
-    sole="says which round or factor is wrong; the estimate alone would not",
+    hint="handout, equations (11) to (13): what stands after 0 iterations, after 1?",
+    sole="says which iteration or factor is wrong; the estimate alone would not",
 )
 def rounds_are_as_counted(t):
-    """Samples at texel centers only: the estimate after n rounds is known in closed form."""
+    """Samples at texel centers only: the estimate after n iterations is known in closed form."""
     shape = (3, 4)
     often = t.rng.integers(1, 6, 12)
     uv = np.repeat(centers(shape), often, axis=0)
     for n in (0, 1, 2, 6):
         got = t.call("largest_curvature", shape, uv, n, returns=Number())
         mean = np.sum(often ** (2.0 * n + 1)) / np.sum(often ** (2.0 * n))
-        t.close(f"estimate after {n} rounds", got, 2 * mean / len(uv), reveal=True)
+        t.close(f"estimate after {n} iterations", got, 2 * mean / len(uv), reveal=True)
 
 
 @check(
     "03.4.bound",
     points=3,
     tolerance=ESTIMATE,
-    hint="keep x at length 1: 300 rounds make anything else 0 or infinite",
-    sole="asks what the function is for, after many rounds",
+    hint="keep x at length 1: 300 iterations make anything else 0 or infinite",
+    sole="asks what the function is for, after many iterations",
 )
 def many_rounds_find_the_largest_eigenvalue(t):
-    """After 300 rounds the estimate is the Hessian's largest eigenvalue within 2 %."""
+    """After 300 iterations the estimate is the Hessian's largest eigenvalue within 2 %."""
     shape = (8, 7)
     uv = t.rng.uniform(0.0, 1.0, (150, 2)) ** 2
     got = t.call("largest_curvature", shape, uv, 300, returns=Number())

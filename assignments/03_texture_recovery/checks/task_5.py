@@ -7,12 +7,12 @@ from photograd_course.grading.adjoint_gate import matrix_of
 from .common import CHAINED
 
 FIRST_STEP = Tolerance(
-    1e-3, "40 rounds on gathered samples leave 1e-15, the nearest wrong one (step_whole) 0.053"
+    1e-3, "40 iterations on gathered samples leave 1e-15, the nearest wrong one (step_whole) 0.053"
 )
 
 
 def recovered(shape, n):
-    """What `recover_texture` returns."""
+    """Result of `recover_texture`."""
     parts = (Array(tuple(shape)), Array((n + 1,)), Array(tuple(shape[:2]), "bool"))
     return Items(*parts, names=("T", "losses", "unseen"))
 
@@ -37,7 +37,7 @@ check = checks_for(calls=("recover_texture",), needs=EARLIER)
     points=3,
     tolerance=FIRST_STEP,
     hint="handout, equations (14) and (15)",
-    sole="asks about the first step alone",
+    sole="tests the first step only",
 )
 def the_first_step(t):
     """One step goes against the gradient, by 0.95 of the largest stable step."""
@@ -82,7 +82,7 @@ def steps_can_be_chained(t):
     sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
-    """A second descent from the same array T0 finds what the first one found."""
+    """A second fit from the same array T0 finds what the first one found."""
     shape = (4, 3, 2)
     uv, T0 = t.rng.uniform(0.0, 1.0, (60, 2)), t.rng.uniform(0.0, 1.0, shape)
     target = t.rng.uniform(0.0, 1.0, (60, 2))
@@ -95,7 +95,7 @@ def the_start_is_left_alone(t):
     "03.5.unseen",
     points=2,
     hint="which texels does any sample give weight? that does not depend on values",
-    sole="asks about what no measurement reaches",
+    sole="tests what no measurement reaches",
 )
 def unseen_texels_stay(t):
     """Texels without any sample keep their value to the last bit, and are reported."""

@@ -38,7 +38,7 @@ def mips(t, T):
     "03.6.mean",
     points=3,
     hint="handout, equation (16): each texel is the mean of those it replaces",
-    sole="what a pyramid is for: the same light at each size",
+    sole="what a mipmap is for: the same light at each size",
 )
 def each_level_has_the_same_mean(t):
     """Levels shrink by halves down to one texel, and all have the same mean."""

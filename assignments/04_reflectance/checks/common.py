@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import math
 

@@ -42,10 +42,10 @@ def room(t, value, channels, cosines):
     "04.1.matte",
     points=3,
     hint="equation (5): each direction has its own solid angle; one row (C,) for each viewer",
-    sole="the one model whose albedo everybody knows",
+    sole="the one model whose albedo is known",
 )
 def a_matte_surface_returns_its_albedo(t):
-    """f = albedo / pi returns the albedo, whoever looks."""
+    """f = albedo / pi returns the albedo for every viewer."""
     albedo, cosines = t.rng.uniform(0.2, 1.0, 3), t.rng.uniform(0.1, 1.0, 4)
     got = room(t, lambda wo, wi: 0 * wi + albedo / np.pi + 0 * wo, 3, cosines)
     t.close("albedo", got, np.tile(albedo, (4, 1)), reveal=True)
@@ -76,8 +76,8 @@ def models_with_a_known_integral(t):
 @check(
     "04.1.burley",
     points=2,
-    hint="mend the checks above first",
-    sole="the first discovery: a famous model that makes light",
+    hint="fix the checks above first",
+    sole="the first discovery: a famous model that is not energy-conserving",
 )
 def a_fit_that_makes_light(t):
     """Burley's white rough surface, seen from the horizon, returns 1.5575 times the light."""

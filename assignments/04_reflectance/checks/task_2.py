@@ -15,7 +15,7 @@ check = checks_for(calls=("ggx_lobe",), tolerance=EXACT)
     "04.2.peak",
     points=2,
     hint="equations (8) and (10): alpha is the roughness squared; straight on q is 1 and L is 2",
-    sole="one number that can be worked out by head",
+    sole="one number that can be worked out by hand",
 )
 def straight_back(t):
     """Light that comes from and goes to straight above: 1 / (4 pi roughness^4)."""
@@ -71,7 +71,7 @@ def nothing_below_the_surface(t):
     t.require(bool((some > 0).all()), "above the surface the lobe must be more than 0")
 
 
-# What a surface of perfect mirrors returns: roughness, cosine of the viewer, albedo.
+# What a surface of microfacets with F = 1 returns: roughness, cosine of the viewer, albedo.
 MIRRORS = (
     (0.5, 1.0, 0.915812),
     (0.5, 0.6, 0.871721),
@@ -91,7 +91,7 @@ MIRRORS = (
     sole="the furnace decides: what each roughness returns, 1 - ln 2 among it",
 )
 def what_mirrors_return(t):
-    """What surfaces of perfect mirrors return: 1 - ln 2 at roughness 1, seen from above."""
+    """What surfaces of microfacets with F = 1 return: 1 - ln 2 at roughness 1, seen from above."""
     wi, solid_angles = hemisphere_quadrature(64, 160)
     got = []
     for r, z, _ in MIRRORS:

@@ -17,7 +17,7 @@ check = checks_for(calls=("ggx_pdf",), needs=("ggx_lobe",))
     sole="the roughest surface in closed form",
 )
 def a_ball_spreads_evenly(t):
-    """At roughness 1 a viewer's mirrored directions are spread evenly: 1 / (2 pi (1 + o_z))."""
+    """At roughness 1 a viewer's reflected directions are uniform: 1 / (2 pi (1 + o_z))."""
     wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     right = 1 / (2 * np.pi * (1 + wo[:, 2]))
     t.close("density at roughness 1", densities(t, wo, wi, 1.0), right, reveal=True)
@@ -27,11 +27,11 @@ def a_ball_spreads_evenly(t):
     "04.3.mass",
     points=3,
     tolerance=TABLE,
-    hint="turning a facet by an angle turns the mirrored direction by two: equation (12)",
+    hint="turning a facet by an angle turns the reflected direction by two: equation (12)",
     sole="a density is known by its integral",
 )
 def what_stays_above(t):
-    """Seen from straight above, facets steeper than 45 degrees mirror downwards: the rest stays."""
+    """Seen from straight above, facets steeper than 45 degrees reflect downward: the rest stays."""
     wi, solid_angles = hemisphere_quadrature(96, 16)
     for r in t.rng.uniform(0.6, 1.0, 3):
         mass = solid_angles @ densities(t, viewer(1.0, len(wi)), wi, r)

@@ -10,7 +10,7 @@ from .common import EXACT, densities, lobes, turned, viewer
 
 check = checks_for(calls=("sample_ggx",))
 
-LEVEL = 3e-4  # of one judgement; seven draws are judged
+LEVEL = 3e-4  # of one judgement; seven samples are judged
 
 
 def drawn(t, wo, r, u2):
@@ -19,7 +19,7 @@ def drawn(t, wo, r, u2):
 
 
 def twice(t, judge, text):
-    """Require of random draws that one of two judgements is better than LEVEL."""
+    """Require of random samples that one of two judgements is better than LEVEL."""
     t.require(judge() >= LEVEL or judge() >= LEVEL, text)
 
 
@@ -96,13 +96,13 @@ def compare_samples(t, wo, r, shares):
     sole="what every single sample must satisfy",
 )
 def samples_are_mirrored_at_facets(t):
-    """Unit vectors, each mirrored at a facet of the surface that the viewer sees."""
+    """Unit vectors, each reflected at a facet of the surface that the viewer sees."""
     for r in (0.1, 0.5, 1.0):
         wo = upper_directions(t.rng, 200, 0.05)
         wi = drawn(t, wo, r, t.rng.random((200, 2)))
         t.close("lengths", np.linalg.norm(wi, axis=1), np.ones(200), reveal=True)
         h = wo + wi
-        t.require(bool((h[:, 2] > 0).all()), "wo + wi must point upwards: a facet's normal does")
+        t.require(bool((h[:, 2] > 0).all()), "wo + wi must point upward: a facet's normal does")
         t.require(bool(((wo * h).sum(axis=1) > 0).all()), "the viewer must see the facet")
 
 
@@ -150,7 +150,7 @@ def samples_have_the_density(t):
     "04.4.mean",
     points=2,
     needs=("ggx_lobe", "ggx_pdf"),
-    hint="mend 04.4.chi first",
+    hint="fix 04.4.chi first",
     sole="what it is for: the mean of the weights is the furnace's albedo",
 )
 def weights_average_to_the_albedo(t):

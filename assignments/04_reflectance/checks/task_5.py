@@ -12,11 +12,11 @@ check = checks_for(calls=("gltf",), needs=("ggx_lobe",), tolerance=EXACT)
 @check(
     "04.5.straight",
     points=3,
-    hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base color for metal",
-    sole="ground, varnish and metal, each with a number of its own",
+    hint="straight on Schlick's ramp is 0: F is 0.04 for the coating, the base color for metal",
+    sole="base layer, coating and metal, each with a number of its own",
 )
 def straight_on(t):
-    """Straight back, dielectric and metal can be worked out by head."""
+    """Straight back, dielectric and metal can be worked out by hand."""
     up = viewer(1.0, 6)
     color, _, r = material(t.rng, 6)
     height = (1 / (4 * np.pi * r**4))[:, None]
@@ -50,7 +50,7 @@ def white_metal_is_the_lobe(t):
 @check(
     "04.5.blend",
     points=2,
-    hint="equation (20): blend the finished values, not what goes into them",
+    hint="equation (20): blend the values of the BRDFs, not f0",
     sole="the trap of section 5",
 )
 def half_metal_is_half_of_each(t):
@@ -84,7 +84,7 @@ def reciprocal_and_above(t):
     "04.5.energy",
     points=1,
     tolerance=TABLE,
-    hint="mend the checks above first",
+    hint="fix the checks above first",
     sole="what the furnace says: half metal lies between its ends",
 )
 def what_white_returns(t):

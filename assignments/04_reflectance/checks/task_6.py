@@ -45,7 +45,7 @@ def near_mirrors(rng, n):
     sole="the derivative itself, without the reference",
 )
 def agrees_with_differences(t):
-    """Moving one parameter a little moves your f as your derivatives say."""
+    """A small change of one parameter changes your f as your derivatives say."""
     wo, wi = near_mirrors(t.rng, 6)
     color, m, r = material(t.rng, 6)
     g = random_cotangent(t.rng, (6, 3))
@@ -62,7 +62,7 @@ def agrees_with_differences(t):
     "04.6.straight",
     points=2,
     hint="roughness^-4 has the derivative -4 roughness^-5; alpha is the roughness squared",
-    sole="the roughness alone, where it can be worked out by head",
+    sole="the roughness alone, where it can be worked out by hand",
 )
 def the_peak_sinks(t):
     """Straight back the lobe is 1 / (4 pi roughness^4), and so is its derivative known."""

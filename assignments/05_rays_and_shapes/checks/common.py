@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance
@@ -14,16 +14,16 @@ WHOLE = Array((None,), "i8")
 
 
 def distances(count):
-    """What each of count rays meets: t above 0, infinite where there is nothing."""
+    """What each of count rays hits: t above 0, infinite where there is nothing."""
     return Array((count,), finite=False, above=0.0)
 
 
 def same_hits(t, got, right, tolerance=None, hint=""):
-    """The same rays meet something, at the same t."""
+    """The same rays hit something, at the same t."""
     wrong = np.isfinite(got) != np.isfinite(right)
     if wrong.any():
         at = int(np.argwhere(wrong)[0, 0])
-        told = "meets nothing" if np.isinf(got[at]) else "meets something"
+        told = "hits nothing" if np.isinf(got[at]) else "hits something"
         t.require(
             False,
             f"{int(wrong.sum())} of {len(got)} rays are wrong: number {at} {told}, which is not so",
@@ -53,9 +53,9 @@ def built(t, low, high):
     t.require(nodes == len(first) == len(count) > 0, "boxes, first and count differ in length")
     t.require(
         np.array_equal(np.sort(order), np.arange(len(low))),
-        "order must hold the number of each thing once",
+        "order must hold the number of each primitive once",
     )
-    t.require(bool(((count >= 0) & (count <= LEAF)).all()), f"a leaf holds 1 to {LEAF} things")
+    t.require(bool(((count >= 0) & (count <= LEAF)).all()), f"a leaf holds 1 to {LEAF} primitives")
     waiting, used, owned = [0], np.zeros(nodes, np.int64), np.zeros(len(low), np.int64)
     while waiting:
         node = waiting.pop()
@@ -70,12 +70,12 @@ def built(t, low, high):
             t.require(not used[at : at + 2].any(), "two nodes share a child, or one is its own")
             waiting += [at, at + 1]
     t.require(bool((used == 1).all()), "a node belongs to no parent")
-    t.require(bool((owned == 1).all()), "a thing is in no leaf, or in several")
+    t.require(bool((owned == 1).all()), "a primitive is in no leaf, or in several")
     return boxes, first, count, order
 
 
 class Scene:
-    """Rectangles, each across one axis: what a ray meets, told and counted."""
+    """Rectangles, each across one axis: what a ray hits, told and counted."""
 
     def __init__(self, low, high):
         self.low, self.high = low, high
@@ -111,6 +111,6 @@ class Scene:
         numbers = np.asarray(numbers)
         whole = numbers.ndim == 1 and numbers.size and numbers.dtype.kind == "i"
         if not whole or not ((numbers >= 0) & (numbers < len(self.low))).all():
-            raise CheckFailed("traverse: meet wants numbers (K,) of things, one or more")
+            raise CheckFailed("traverse: meet wants numbers (K,) of primitives, one or more")
         self.met += numbers.tolist()
         return self.times(numbers)

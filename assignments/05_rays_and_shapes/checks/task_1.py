@@ -18,7 +18,7 @@ def hit(t, origins, directions, center, radius):
 
 
 def rays_onto(t, count, center, radius):
-    """(origins, directions, right, outward normals) of rays that meet a sphere from outside."""
+    """(origins, directions, right, outward normals) of rays that hit a sphere from outside."""
     n, d = unit_vectors(t.rng, count), unit_vectors(t.rng, count)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.1 * n
     d *= lengths(t, count)
@@ -42,7 +42,7 @@ def rays_within(t, count, center, radius):
     sole="where most rays come from",
 )
 def spheres_from_outside(t):
-    """Rays aimed at a place of a sphere from outside meet it there, whatever their length."""
+    """Rays aimed at a point of a sphere from outside hit it there, whatever their length."""
     for _ in range(3):
         center, radius = sphere(t)
         origins, directions, right, _ = rays_onto(t, 20, center, radius)
@@ -56,7 +56,7 @@ def spheres_from_outside(t):
     sole="what refraction and shadows need",
 )
 def spheres_from_inside(t):
-    """Rays that start inside meet the far side; rays that start on the sphere, not their start."""
+    """Rays that start inside hit the far side; rays that start on the sphere, not their start."""
     for _ in range(3):
         center, radius = sphere(t)
         origins, directions, right = rays_within(t, 20, center, radius)
@@ -66,11 +66,11 @@ def spheres_from_inside(t):
 @check(
     "05.1.misses",
     points=2,
-    hint="nothing behind the origin is met, nor where h² < 0; a ray that touches meets",
+    hint="nothing behind the origin is hit, nor where h² < 0; a ray that touches hits",
     sole="what is not there must not be seen",
 )
 def spheres_missed(t):
-    """Rays past a sphere and away from it meet nothing; one that touches it does."""
+    """Rays past a sphere and away from it hit nothing; one that touches it does."""
     cases = (
         ((-3, 1, 0), (1, 0, 0), 3.0),  # touches
         ((-3, 0, -1), (0.5, 0, 0), 6.0),
@@ -98,10 +98,10 @@ def spheres_missed(t):
     "05.1.far",
     points=1,
     tolerance=FAR,
-    hint="handout, end of section 1: subtract places before you square them",
+    hint="handout, end of section 1: subtract points before you square them",
 )
 def a_sphere_far_away(t):
-    """A sphere of radius 1 is met on its surface from ten million meters away as well."""
+    """A sphere of radius 1 is hit on its surface from ten million meters away as well."""
     n = unit_vectors(t.rng, 30)
     d = unit_vectors(t.rng, 30)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n

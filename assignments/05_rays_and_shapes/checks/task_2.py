@@ -15,7 +15,7 @@ def triangles(t, origin, direction, corners):
 
 
 def aimed(t, count, parts, ahead):
-    """(origin, direction, corners): triangles of which a ray passes the places with these parts.
+    """(origin, direction, corners): triangles of which a ray passes the points with these parts.
 
     `parts` (count, 2) are the weights of b and c, `ahead` (count,) the t at which they are passed.
     """
@@ -54,12 +54,12 @@ def outer_parts(t, count):
     sole="t and the weights, from both sides",
 )
 def places_inside_triangles(t):
-    """A ray through a known place of a triangle meets it there, from either side."""
+    """A ray through a known point of a triangle hits it there, from either side."""
     for _ in range(3):
         parts, ahead = inner_parts(t, 20), t.rng.uniform(0.1, 5, 20)
         origin, direction, corners = aimed(t, 20, parts, ahead)
         got, weights = triangles(t, origin, direction, corners)
-        same_hits(t, got, ahead, hint="a triangle is met from both sides")
+        same_hits(t, got, ahead, hint="a triangle is hit from both sides")
         t.close("weights", weights, parts, hint="the first is that of b, the second that of c")
 
 
@@ -71,7 +71,7 @@ def places_inside_triangles(t):
     sole="what is not there must not be seen",
 )
 def places_outside_triangles(t):
-    """Beside a triangle, behind the origin, along its plane and without area: nothing is met."""
+    """Beside a triangle, behind the origin, along its plane and without area: nothing is hit."""
     for _ in range(3):
         parts = np.concatenate([inner_parts(t, 12), outer_parts(t, 24)])
         ahead = t.rng.uniform(0.1, 5, 36) * np.where(np.arange(36) % 3 == 2, -1, 1)
@@ -81,7 +81,7 @@ def places_outside_triangles(t):
         got, weights = triangles(t, origin, direction, corners)
         same_hits(t, got, right)
         missed = np.isinf(right)
-        t.require(not weights[missed].any(), "weights are zeros where nothing is met")
+        t.require(not weights[missed].any(), "weights are zeros where nothing is hit")
     flat = np.array(
         [
             [[1, 0, 0], [2, 0, 0], [2, 1, 0]],  # the ray lies in its plane
@@ -115,7 +115,7 @@ def sheet(t, n, jitter):
     sole="light must not leak between two triangles",
 )
 def no_light_between_triangles(t):
-    """Rays onto edges and corners of a sheet meet it; rays onto its faces meet one triangle."""
+    """Rays onto edges and corners of a sheet hit it; rays onto its faces hit one triangle."""
     n = 5
     for jitter in (0.0, 0.3):
         corners, v = sheet(t, n, jitter)
@@ -134,4 +134,4 @@ def no_light_between_triangles(t):
             got, _ = triangles(t, place - 4 * direction, direction, corners)
             many = int(np.isfinite(got).sum())
             t.require(many > 0, "a ray leaks between two triangles with a common edge")
-            t.require(k < 40 or many == 1, f"a ray onto one triangle meets {many}")
+            t.require(k < 40 or many == 1, f"a ray onto one triangle hits {many}")

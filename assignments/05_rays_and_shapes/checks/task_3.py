@@ -64,7 +64,7 @@ def snells_law(t):
 @check(
     "05.3.back",
     points=2,
-    hint="the way back is the way there: from inside the ratio is 1 / eta",
+    hint="paths of light are reversible: from inside the ratio is 1 / eta",
     sole="light goes back the way it came",
 )
 def light_goes_back(t):
@@ -80,11 +80,11 @@ def light_goes_back(t):
 @check(
     "05.3.total",
     points=3,
-    hint="handout, equation (12): where (11) has no root everything is mirrored",
+    hint="handout, equation (12): where (11) has no root everything is reflected",
     sole="the critical angle",
 )
 def total_reflection(t):
-    """Beyond the critical angle, and only there, light from inside is mirrored."""
+    """Beyond the critical angle, and only there, light from inside is reflected."""
     eta = 1.5
     critical = np.arcsin(1 / eta)
     n = unit_vectors(t.rng, 12)
@@ -96,12 +96,12 @@ def total_reflection(t):
     out, through = refracted(t, d, n, eta)
     t.require(bool((through == (more < 0)).all()), "through is wrong near the critical angle")
     back = more > 0
-    t.close("mirrored, along the surface", np.cross(n, out)[back], np.cross(n, d)[back])
+    t.close("reflected, along the surface", np.cross(n, out)[back], np.cross(n, d)[back])
     t.close(
-        "mirrored, along the normal", np.sum(out * n, axis=1)[back], -np.sum(d * n, axis=1)[back]
+        "reflected, along the normal", np.sum(out * n, axis=1)[back], -np.sum(d * n, axis=1)[back]
     )
     _, through = refracted(t, *arrivals(t, 8, 1.5), eta)
-    t.require(bool(through.all()), "from outside into glass some light always gets through")
+    t.require(bool(through.all()), "from outside into glass some light always is refracted")
     flat = np.array([[1.0, 0, 0]]), np.array([[0.0, 1, 0]])
     _, through = refracted(t, *flat, 1.0)
-    t.require(not through[0], "where k is 0 nothing gets through")
+    t.require(not through[0], "where k is 0 nothing is refracted")

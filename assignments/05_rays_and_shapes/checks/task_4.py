@@ -9,13 +9,13 @@ from .common import CLOSE, distances, same_hits, sphere
 
 check = checks_for(calls=("march_sdf",))
 
-MARCHED = Tolerance(1e-7, "a march stops 1e-9 short at most, wrong ones by 1e-2 or more")
-SLOPES = Tolerance(1e-4, "differences leave 1e-6, wrong ones are off by 1e-1 or more")
+MARCHED = Tolerance(1e-7, "a sphere tracing stops 1e-9 short at most, wrong ones by 1e-2 or more")
+SLOPES = Tolerance(1e-4, "finite differences leave 1e-6, wrong ones are off by 1e-1 or more")
 COUNTED = Tolerance(1e-12, "whole numbers")
 
 
 class Surface:
-    """A service that tells distances, and counts for how many places."""
+    """A service that tells distances, and counts for how many points."""
 
     def __init__(self, shape, most=100_000):
         self.shape, self.most, self.asked = shape, most, 0
@@ -24,9 +24,9 @@ class Surface:
         if not (isinstance(places, np.ndarray) and places.ndim == 2 and places.shape[1] == 3):
             raise CheckFailed("march_sdf: sdf wants places, an array of shape (M, 3)")
         if len(places) == 0:
-            raise CheckFailed("march_sdf: sdf is asked for no place at all: no ray is on its way")
+            raise CheckFailed("march_sdf: sdf is tested no point at all: no ray is on its way")
         if not np.isfinite(places).all():
-            raise CheckFailed("march_sdf: sdf is asked for a place that is not finite")
+            raise CheckFailed("march_sdf: sdf is tested a point that is not finite")
         self.asked += len(places)
         if self.asked > self.most:
             raise CheckFailed("march_sdf: asks without end")
@@ -69,7 +69,7 @@ def both(first, second, p_first=True):
 
 
 def marched(t, shape, origins, directions, t_max=50.0, steps=400):
-    """(t, d_t, places asked for)."""
+    """(t, d_t, points tested)."""
     service = Surface(shape)
     parts = Items(distances(len(origins)), Array((len(origins),)), names=("t", "d_t"))
     got, d_t = t.call("march_sdf", service, origins, directions, t_max, steps, returns=parts)
@@ -77,7 +77,7 @@ def marched(t, shape, origins, directions, t_max=50.0, steps=400):
 
 
 def onto_ball(t, count, center, radius):
-    """(origins, unit directions, right) of rays that meet a ball from outside, not grazing."""
+    """(origins, unit directions, right) of rays that hit a ball from outside, not grazing."""
     n, d = unit_vectors(t.rng, count), unit_vectors(t.rng, count)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.4 * n
     d /= np.linalg.norm(d, axis=1, keepdims=True)
@@ -101,7 +101,7 @@ def past_ball(t, count, center, radius):
     sole="that the surface is found, and only it",
 )
 def surfaces_are_met(t):
-    """Rays meet a ball, from outside and inside, and what stands behind it; others pass."""
+    """Rays hit a ball, from outside and inside, and what stands behind it; others pass."""
     for _ in range(2):
         center, radius = sphere(t)
         origins, directions, right = onto_ball(t, 15, center, radius)
@@ -115,7 +115,7 @@ def surfaces_are_met(t):
         right = np.concatenate([right, np.full(10, np.inf), through])
         got, d_t, _ = marched(t, ball(center, radius), everything, ways)
         same_hits(t, got, right)
-        t.require(not d_t[np.isinf(got)].any(), "d_t is zero where nothing is met")
+        t.require(not d_t[np.isinf(got)].any(), "d_t is zero where nothing is hit")
     normal = unit_vectors(t.rng, 1)[0]
     origins, directions = past_ball(t, 10, np.zeros(3), 1.0)
     height = float((origins @ normal).min()) - 2.5
@@ -139,11 +139,11 @@ def differences(t, make, origins, directions, eps=1e-2):
     "05.4.derivative",
     points=5,
     tolerance=SLOPES,
-    hint="handout, equation (15): the place is held on the surface while p changes",
-    sole="the gate: differences of the submission's own march",
+    hint="handout, equation (15): the point is held on the surface while p changes",
+    sole="the gate: differences of the submission's own sphere tracing",
 )
 def the_derivative_of_a_hit(t):
-    """d_t is what differences of t by p say: a radius, a place, a height."""
+    """d_t is what differences of t by p say: a radius, a point, a height."""
     center, radius = sphere(t)
     by, normal = unit_vectors(t.rng, 1)[0], unit_vectors(t.rng, 1)[0]
     origins, directions, _ = onto_ball(t, 12, center, radius)
@@ -162,7 +162,7 @@ def the_derivative_of_a_hit(t):
         t.require(
             int(kept.sum()) * 2 > len(o) > 0,
             "half of the rays or more miss",
-            hint="05.4.met looks at what is met",
+            hint="05.4.met looks at what is hit",
         )
         t.require(float(np.abs(right[kept]).max()) > 0.1, "t does not depend on p")
         t.close("d_t", d_t[kept], right[kept])
@@ -172,7 +172,7 @@ def the_derivative_of_a_hit(t):
     "05.4.cost",
     points=3,
     hint="ask only for rays that are neither there nor beyond t_max, at most `steps` times",
-    sole="questions are counted, not seconds",
+    sole="evaluations are counted, not seconds",
 )
 def few_questions(t):
     """A ray straight onto a wall needs two questions, no ray has more than `steps`."""
@@ -181,13 +181,13 @@ def few_questions(t):
     down = np.tile(-up, (5, 1))
     got, _, asked = marched(t, wall(up, 0.0), origins, down)
     same_hits(t, got, origins[:, 2], COUNTED)
-    t.require(asked == 10, f"five rays straight onto a wall: {asked} places, 10 are enough")
+    t.require(asked == 10, f"five rays straight onto a wall: {asked} points, 10 are enough")
     got, _, asked = marched(t, wall(up, 0.0), origins, down, t_max=4.0)
     same_hits(t, got, np.array([1, 2, 4, np.inf, 1]), COUNTED, hint="t_max itself still counts")
-    t.require(asked == 9, f"with t_max 4: {asked} places, 9 are enough")
+    t.require(asked == 9, f"with t_max 4: {asked} points, 9 are enough")
     got, _, asked = marched(t, wall(up, 0.0), origins, down, steps=1)
     t.require(bool(np.isinf(got).all()), "one step is not enough to arrive at a wall")
-    t.require(asked == 5, f"with steps 1 five rays ask for {asked} places, 5 are right")
+    t.require(asked == 5, f"with steps 1 five rays ask for {asked} points, 5 are right")
     got, _, asked = marched(t, wall(up, 0.0), CLOSE * up[None], down[:1])
     same_hits(t, got, np.array([CLOSE]), COUNTED, hint="there is *below* CLOSE")
     # Past slanted walls the distance shrinks by the same factor each time.
@@ -196,6 +196,6 @@ def few_questions(t):
     got, _, asked = marched(t, wall(up, 0.0), np.tile(up, (3, 1)), slanted)
     needed = int((np.ceil(np.log(CLOSE) / np.log(1 - cosine)) + 1).sum())
     t.require(bool(np.isfinite(got).all()), "rays onto a wall miss it")
-    t.require(abs(asked - needed) <= 3, f"three slanted rays: {asked} places, {needed} are needed")
+    t.require(abs(asked - needed) <= 3, f"three slanted rays: {asked} points, {needed} are needed")
     _, _, asked = marched(t, wall(up, 0.0), np.tile(up, (2, 1)), np.tile(up, (2, 1)), t_max=40.0)
-    t.require(asked <= 14, f"two rays away from a wall, to t_max 40: {asked} places, 12 are enough")
+    t.require(asked <= 14, f"two rays away from a wall, to t_max 40: {asked} points, 12 are enough")

@@ -9,14 +9,14 @@ check = checks_for(calls=("build_bvh",))
 
 
 def some_boxes(t, count, stretch=(1.0, 1.0, 1.0)):
-    """(low, high), both (count, 3), of things of many sizes, in a region that is stretched."""
+    """(low, high), both (count, 3), of primitives of many sizes, in a region that is stretched."""
     middle = t.rng.uniform(-5, 5, (count, 3)) * stretch
     half = np.exp(t.rng.uniform(-4, 0, (count, 3)))
     return middle - half, middle + half
 
 
 def held(tree):
-    """For each node the numbers of the things below it."""
+    """For each node the numbers of the primitives below it."""
     _, first, count, order = tree
     found, way = [None] * len(first), [0]
     for node in way:  # which grows meanwhile
@@ -37,26 +37,26 @@ SIZES = (1, 2, 3, 7, 40)
     points=4,
     tolerance=EXACT,
     hint="handout, equation (16): the smallest corner of all, and the largest",
-    sole="a box that is too small loses things, one too large costs",
+    sole="a box that is too small loses primitives, one too large costs",
 )
 def boxes_fit(t):
-    """Every thing is in one leaf, and every box is the smallest that holds what is below it."""
+    """Every primitive is in one leaf, and every box is the smallest that holds what is below it."""
     for count in SIZES:
         low, high = some_boxes(t, count)
         tree = built(t, low, high)
         things = held(tree)
         right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in things])
-        t.close(f"boxes of {count} things", tree[0], right)
+        t.close(f"boxes of {count} primitives", tree[0], right)
 
 
 @check(
     "05.5.halves",
     points=2,
-    hint="handout, equation (17): half of the things to each side, down to LEAF",
+    hint="handout, equation (17): half of the primitives to each side, down to LEAF",
     sole="no path is longer than the logarithm",
 )
 def halves_are_equal(t):
-    """Siblings hold equally many things, up to one; and nothing is cut that fits into a leaf."""
+    """Siblings hold equally many primitives, up to one; nothing is split that fits into a leaf."""
     for count in SIZES:
         tree = built(t, *some_boxes(t, count))
         _, first, many, _ = tree
@@ -64,7 +64,7 @@ def halves_are_equal(t):
         inner = many == 0
         t.require(bool((sizes[inner] > LEAF).all()), "a node is cut that would fit into a leaf")
         apart = np.abs(sizes[first[inner]] - sizes[first[inner] + 1])
-        t.require(bool((apart <= 1).all()), "siblings differ by more than one thing")
+        t.require(bool((apart <= 1).all()), "siblings differ by more than one primitive")
 
 
 @check(
@@ -77,7 +77,7 @@ def halves_lie_apart(t):
     """The middles of siblings are apart along the axis on which they are spread most."""
     for stretch in ((1, 1, 1), (1, 9, 1), (1, 1, 9), (9, 1, 1)):
         low, high = some_boxes(t, 24, stretch)
-        # A long thing across: its box is large, its middle is not far out.
+        # A long primitive across: its box is large, its middle is not far out.
         low[0], high[0] = -30 * np.roll([1, 0, 0], t.rng.integers(3)), np.array([1.0, 1, 1])
         tree = built(t, low, high)
         _, first, many, _ = tree

@@ -42,9 +42,9 @@ def right_answer(t, scene, got, hint=""):
     said = "nothing" if np.isinf(got[0]) else f"t = {got[0]:.6g}"
     asked = "nothing" if np.isinf(nearest) else "something"
     same = np.isinf(got[0]) == np.isinf(nearest)
-    t.require(same, f"a ray meets {asked}, yours meets {said}", hint=hint)
+    t.require(same, f"a ray hits {asked}, yours hits {said}", hint=hint)
     if np.isinf(nearest):
-        t.require(got[1] == -1, "a ray that meets nothing has the number -1")
+        t.require(got[1] == -1, "a ray that hits nothing has the number -1")
         return
     t.close("t", got[0], nearest, EXACT, hint=hint)
     t.require(0 <= got[1] < len(every) and every[got[1]] == nearest, "t is right, number is not")
@@ -58,7 +58,7 @@ def right_answer(t, scene, got, hint=""):
     sole="the same answer as from asking everything",
 )
 def the_nearest_of_all(t):
-    """The first thing that rays meet is the one found by asking all."""
+    """The first primitive that rays hit is the one found by asking all."""
     for count, size in ((1, 1.0), (3, 1.0), (60, 1.0), (30, 6.0)):  # the last ones overlap a lot
         scene = rectangles(t, count, size)
         tree = grow(t, scene)
@@ -81,7 +81,7 @@ def the_nearest_of_all(t):
     sole="what random rays never do, and those of a camera always",
 )
 def rays_along_axes(t):
-    """Rays along axes and in planes, from places on faces too, meet what they should."""
+    """Rays along axes and in planes, from points on faces too, hit what they should."""
     scene = rectangles(t, 40, 2.0)
     tree = grow(t, scene)
     for k in range(18):
@@ -115,10 +115,10 @@ def lanes(t, rows, deep):
     "05.6.cost",
     points=3,
     hint="handout, equation (20): the nearer box first, and what begins behind the best, never",
-    sole="what a tree is for: questions are counted, not seconds",
+    sole="what a tree is for: evaluations are counted, not seconds",
 )
 def few_boxes_are_asked_for(t):
-    """A ray through many things asks for the boxes that it enters before its hit, and siblings."""
+    """A ray through many primitives tests the boxes that it enters before its hit, and siblings."""
     scene = lanes(t, 4, 16)
     tree = grow(t, scene)
     boxes, _, count, _ = tree
@@ -138,22 +138,22 @@ def few_boxes_are_asked_for(t):
         needed = 1 + 2 * int((entered & (count == 0)).sum())
         things = int(count[entered].sum())
         t.require(
-            len(scene.asked) <= needed,
-            f"{len(scene.asked)} boxes were asked for, {needed} are enough",
+            len(scene.asked) <= needed, f"{len(scene.asked)} boxes were tested, {needed} are enough"
         )
         t.require(
-            len(scene.met) <= things, f"{len(scene.met)} things were asked for, {things} are enough"
+            len(scene.met) <= things,
+            f"{len(scene.met)} primitives were tested, {things} are enough",
         )
 
 
 @check(
     "05.6.growth",
     points=2,
-    hint="16 times as many things are four more levels, not 16 times as many boxes",
+    hint="16 times as many primitives are four more levels, not 16 times as many boxes",
     sole="growth, by counts",
 )
 def questions_grow_like_a_logarithm(t):
-    """With 16 times as many things of a sheet, fewer than twice as many boxes are asked for."""
+    """With 16 times as many primitives of a sheet, fewer than twice as many boxes are tested."""
     means = []
     for rows in (8, 32):
         scene = lanes(t, rows, 1)
@@ -169,7 +169,7 @@ def questions_grow_like_a_logarithm(t):
         means.append(asked / 9)
     t.require(
         means[1] < 2 * means[0],
-        f"64 things: {means[0]:.1f} boxes a ray, 1024 things: {means[1]:.1f}",
+        f"64 primitives: {means[0]:.1f} boxes a ray, 1024 primitives: {means[1]:.1f}",
     )
 
 
@@ -265,5 +265,5 @@ def as_embree_has_it(t):
     right = np.array(EMBREE)
     t.require(len(numbers) == 24, "a number for each ray")
     wrong = int((numbers != right).sum())
-    t.require(wrong == 0, f"{wrong} of 24 rays meet another triangle, or none")
+    t.require(wrong == 0, f"{wrong} of 24 rays hit another triangle, or none")
     t.close("t", got[right >= 0], np.array(EMBREE_T))

@@ -1,7 +1,5 @@
 """Two explicit blocks that only look at lit rows; paths by recursion; sums by matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 from path_tracing import (
     ALWAYS,
@@ -19,18 +17,6 @@ from path_tracing import (
 
 
 def light_pdf(scene, thing, wi, distance):
-    """How densely `sample_light` draws directions, by solid angle.
-
-    Args:
-        scene: with K lamps.
-        thing: (N,), what lies in the direction wi; -1 for nothing.
-        wi: (N, 3), from the point towards it.
-        distance: (N,), how far away it is, in meters.
-
-    Returns:
-        (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout
-        equations (5) and (6).
-    """
     cross = np.cross(scene["edges_u"], scene["edges_v"])  # as long as the area
     flat = len(cross)
     shines = np.zeros(len(scene["matte"]), bool)
@@ -49,15 +35,6 @@ def light_pdf(scene, thing, wi, distance):
 
 
 def mis_weight(pdf, other):
-    """How much a sample of one strategy counts, when another could have drawn it as well.
-
-    Args:
-        pdf: (N,), the density of the strategy that has drawn it, 0 or more, in 1/sr.
-        other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
-
-    Returns:
-        (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
-    """
     with np.errstate(divide="ignore", over="ignore"):
         ratio = np.where(pdf > 0, other / np.where(pdf > 0, pdf, 1.0), np.inf)
         ratio = np.minimum(ratio, 1e150)
@@ -65,21 +42,6 @@ def mis_weight(pdf, other):
 
 
 def direct_light(scene, hit, u_light, u_surface, proposal=None):
-    """The light that comes straight from lamps and leaves the surface to the viewer.
-
-    Args:
-        scene: with at least one lamp.
-        hit: N places; something is seen in every row.
-        u_light: (N, 3), for `sample_light`: one direction for each row.
-        u_surface: (N, 3), for `sample_brdf`: another one.
-        proposal: the scene by which directions, densities and weights are made; None for `scene`
-            itself. Both scenes have the same shapes and lamps, materials may differ. What is seen
-            along a direction, and how the surface reflects it, is always that of `scene`.
-
-    Returns:
-        (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
-        equations (8) to (10).
-    """
     chooser = proposal or scene
     sent = np.zeros((len(hit["thing"]), 3))
 
@@ -101,16 +63,6 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
 
 
 def roulette(beta, u):
-    """End paths that carry little; let the others carry more for it.
-
-    Args:
-        beta: (N, 3), what a path's light is multiplied with on its way to the viewer, 0 or more.
-        u: (N,), uniform in [0, 1).
-
-    Returns:
-        (beta (N, 3), alive (N,) of bool): the new factors, zeros where the path has ended, and
-        which paths go on. Handout equations (11) and (12).
-    """
     brightest = np.max(beta, axis=1)
     chance = np.where(brightest < 1, brightest, 1.0)
     alive = chance > u
@@ -120,19 +72,6 @@ def roulette(beta, u):
 
 
 def trace_paths(scene, origins, directions, depth, rng):
-    """The radiance that comes along rays, light over several surfaces included.
-
-    Args:
-        scene: with at least one lamp.
-        origins, directions: (N, 3), of the viewer's rays; unit directions.
-        depth: 1 or more: how many straight pieces a path may have, from the lamp to the viewer.
-            1 is what things emit towards the viewer, 2 has direct light as well, and so on.
-        rng: a generator; each ray gets random numbers of its own.
-
-    Returns:
-        (N, 3), one estimate for each ray; 0 where a ray sees nothing. Handout equations (13) to
-        (15).
-    """
 
     def arriving(hit, beta, bounce):
         """What leaves these places to where they are seen from, by reflection, times beta."""
@@ -160,20 +99,6 @@ def trace_paths(scene, origins, directions, depth, rng):
 
 
 def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
-    """The adjoint of `direct_light`, by what things are made of.
-
-    Directions, densities and weights are held fixed: it is the derivative of
-    `direct_light(scene, hit, u_light, u_surface, proposal)` by `scene` alone, where `proposal` is a
-    copy of `scene` that stays as it is.
-
-    Args:
-        scene, hit, u_light, u_surface: as for `direct_light`.
-        d_radiance: (N, 3), the derivative of some loss by each number that `direct_light` returned.
-
-    Returns:
-        (d_base_color (T, 3), d_roughness (T,)), one row for each thing of the scene, zero for
-        things that the hit does not contain. Handout equations (16) to (18).
-    """
     colors, roughs, things = [], [], []
 
     def add(rows, wi, there, numerator, denominator):

@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import math
 
@@ -8,7 +8,7 @@ from photograd_course.grading.generators import hemisphere_quadrature, upper_dir
 
 # Evidence: worst of the solution and three alternatives, against the nearest named wrong solution.
 EXACT = Tolerance(1e-10, "right ones differ by 1e-15, wrong ones by 1e-3 or more")
-LEVEL = 2e-4  # of one judgement; eleven draws are judged
+LEVEL = 2e-4  # of one test; there are eleven
 TASK_3 = ("light_pdf", "mis_weight")
 UP = np.array([0.0, 1.0, 0.0])
 
@@ -17,7 +17,7 @@ UP = np.array([0.0, 1.0, 0.0])
 def scene_of(flat, balls=()):
     """A scene of rectangles (corner, edge_u, edge_v, material), balls (center, radius, material).
 
-    Materials are dicts; what they leave out is gray and matte.
+    Materials are dicts; the default is gray and matte.
     """
     given = [thing[-1] for thing in (*flat, *balls)]
     scene = {
@@ -34,7 +34,7 @@ def scene_of(flat, balls=()):
 
 
 def cube(**material):
-    """Six rectangles around the origin, 2 m wide, fronts inwards."""
+    """Six rectangles around the origin, 2 m wide, fronts inward."""
     faces = (
         ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
         ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
@@ -47,12 +47,12 @@ def cube(**material):
 
 
 def flake(**material):
-    """A thing out of everything's way, to lend its material to places of a hit."""
+    """A distant primitive whose material is used by points of a hit."""
     return ((50, 50, 50), (0.1, 0, 0), (0, 0.1, 0), material)
 
 
 def hit_at(points, wo, thing):
-    """Places on a surface that faces up."""
+    """Points on a surface that faces up."""
     n = len(points)
     return {
         "points": np.asarray(points, float),
@@ -76,7 +76,7 @@ def corners_of(corner, u, v):
 
 
 def irradiance(corners, normal=UP):
-    """Of a surface at the origin, by a rectangle of radiance 1 wholly above it (Lambert)."""
+    """Irradiance of a surface at the origin from a rectangle of radiance 1 above it (Lambert)."""
     d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
     total = np.zeros(3)
     for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
@@ -93,9 +93,9 @@ def nodes(count):
     return np.stack([u.ravel(), v.ravel()], axis=1), np.outer(w, w).ravel()
 
 
-# Judgements ---------------------------------------------------------------------------------------
+# Statistical tests --------------------------------------------------------------------------------
 def p_value(values, right):
-    """Of draws (n, C) whose means should be `right` (C,): the least by C."""
+    """p-value of samples (n, C) with the expected means `right` (C,): the smallest times C."""
     n = len(values)
     spread = values.std(axis=0, ddof=1) / math.sqrt(n)
     off = np.abs(values.mean(axis=0) - right)
@@ -108,9 +108,9 @@ def p_value(values, right):
 
 
 def require_mean(t, what, draw, right, mistakes=(), hint=""):
-    """Require that draws have the right mean; draws that look bad get a second chance.
+    """Require that samples have the right mean; a failed test is repeated once.
 
-    `mistakes` are (mean that it would have, what to say of it); `hint` is for all others.
+    `mistakes` are (mean of a known mistake, its message); `hint` is for all others.
     """
     values = draw()
     if p_value(values, right) < LEVEL:
@@ -138,7 +138,7 @@ def direct(t, scene, hit, u=None, proposal=None):
 
 
 def furnace(t, n=2500):
-    """(scene, hit, right, error): a glossy place in a room that is equally bright everywhere."""
+    """(scene, hit, right, error): a glossy point in a room that is equally bright everywhere."""
     given = {
         "base_color": t.rng.uniform(0.2, 0.9, 3),
         "metalness": float(t.rng.uniform(0.2, 0.8)),
@@ -151,15 +151,15 @@ def furnace(t, n=2500):
 
 
 def albedo(t, scene, hit):
-    """The furnace integral of assignment 04, for the first place of a hit."""
+    """The furnace integral of assignment 04, for the first point of a hit."""
     wi, solid_angles = hemisphere_quadrature(40, 64, up=1)
     rows = {name: np.repeat(values[:1], len(wi), axis=0) for name, values in hit.items()}
     return (solid_angles * wi[:, 1]) @ t.call("brdf", scene, rows, wi, returns=Array((len(wi), 3)))
 
 
 def all_draw(t, n, share):
-    """Numbers by which the lamp at this share of all is drawn, and ways that lead past lamps."""
+    """Random numbers that sample the light at this fraction of all, and directions past lights."""
     u = t.rng.random((2, n, 3))
     u[0, :, 0] = share
-    u[1, :, 0], u[1, :, 2] = 0.2, 0.9999  # by the cosine, and almost level
+    u[1, :, 0], u[1, :, 2] = 0.2, 0.9999  # cosine-weighted, and nearly horizontal
     return u

@@ -9,11 +9,11 @@ from .common import EXACT, UP, corners_of, flake, nodes, scene_of, ways
 
 check = checks_for(calls=("light_pdf",))
 
-NODES = Tolerance(1e-7, "16 nodes an axis leave 1e-9, wrong ones are off by 0.1 or more")
+NODES = Tolerance(1e-7, "16 nodes per axis have an error of 1e-9, wrong solutions of 0.1 or more")
 
 
 def panel(rng, point, low=0.8, high=1.6):
-    """(corner, edge_u, edge_v) of a rectangle at random above a point, its front towards it."""
+    """(corner, edge_u, edge_v) of a random rectangle above a point that faces its front."""
     center = point + rng.uniform(low, high) * ways(rng, 1, 0.5)[0]
     towards = (point - center) / np.linalg.norm(point - center)
     normal = towards + 0.5 * ways(rng, 1, 0.0)[0]
@@ -26,7 +26,7 @@ def panel(rng, point, low=0.8, high=1.6):
 
 
 def solid_angle(corners):
-    """Of a rectangle seen from the origin: two triangles, by Van Oosterom and Strackee."""
+    """Solid angle of a rectangle from the origin: two triangles, by Van Oosterom and Strackee."""
     total = 0.0
     for k in (1, 2):
         a, b, c = corners[0], corners[k], corners[k + 1]
@@ -41,7 +41,7 @@ def density(t, scene, thing, wi, distance):
 
 
 def towards(scene, thing, point, uv):
-    """(wi, distance) from a point to places (n, 2) of a rectangle."""
+    """(wi, distance) from a point to points (n, 2) of a rectangle."""
     place = (
         scene["corners"][thing]
         + uv[:, :1] * scene["edges_u"][thing]
@@ -55,12 +55,14 @@ def towards(scene, thing, point, uv):
     "07.1.straight",
     points=2,
     tolerance=EXACT,
-    hint="equation (6): straight ahead the cosine is 1, and what is left is "
-    "distance squared over area, for one of K lamps",
-    sole="one number that can be worked out by head",
+    hint=(
+        "equation (6): straight below the cosine is 1, so it is distance squared over "
+        "area, times 1 / K"
+    ),
+    sole="one number that can be worked out by hand",
 )
 def straight_below(t):
-    """Straight below the middle of a lamp: distance squared over its area, a K-th of it for K."""
+    """Straight below the center of one of K lights: distance squared over K times its area."""
     for count in (1, 3):
         a, b, h = t.rng.uniform(0.2, 1.0, 3)
         lamp = ((-a, h, -b), (2 * a, 0, 0), (0, 0, 2 * b), {"emission": 2.0})
@@ -74,12 +76,14 @@ def straight_below(t):
     "07.1.solid_angle",
     points=4,
     tolerance=NODES,
-    hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
-    "away four times smaller",
-    sole="a density by solid angle is known by the solid angle",
+    hint=(
+        "equations (4) to (6): a tilted area covers a smaller solid angle, at twice the "
+        "distance a quarter"
+    ),
+    sole="a density per solid angle integrates to the solid angle",
 )
 def densities_know_the_solid_angle(t):
-    """The mean of 1 / density over the places of a lamp is its solid angle, K times that for K."""
+    """The mean of 1 / density over the area of a light is its solid angle, times K for K lights."""
     uv, weights = nodes(16)
     for count in (1, 2, 3):
         point = t.rng.uniform(-1, 1, 3)
@@ -88,7 +92,9 @@ def densities_know_the_solid_angle(t):
         for k in range(count):
             wi, far = towards(scene, k + 1, point, uv)
             pdf = density(t, scene, np.full(len(uv), k + 1), wi, far)
-            t.require(bool((pdf > 0).all()), "the front of a lamp is seen, and the density is 0")
+            t.require(
+                bool((pdf > 0).all()), ("the front of a light is visible, and the density is 0")
+            )
             right = solid_angle(corners_of(*flat[k][:3]) - point)
             t.close("mean of 1 / density", weights @ (1 / (count * pdf)), right, reveal=True)
 
@@ -96,11 +102,11 @@ def densities_know_the_solid_angle(t):
 @check(
     "07.1.none",
     points=2,
-    hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
-    sole="what is never drawn has density 0",
+    hint="only the fronts of lights are sampled: the front is on the side of the normal",
+    sole="directions that are never sampled have density 0",
 )
 def no_density_without_a_lamp(t):
-    """Walls, balls, nothing at all, and a lamp from behind or from the edge: exactly 0."""
+    """Walls, balls, no hit, and a light from behind or from the edge: exactly 0."""
     turn = t.rng.uniform(0.5, 2.0)
     flat = [flake(), ((0, 1, 0), (1, 0, 0), (0, 0, turn), {"emission": [0, 0, 1]}), flake()]
     scene = scene_of(flat, [((0, 3, 0), 1, {})])
@@ -108,7 +114,15 @@ def no_density_without_a_lamp(t):
     wi = np.array([UP, [0, 0, -1], UP, UP, -UP, [1.0, 0, 0], [0, 0.6, -0.8]])
     far = np.array([1.0, 1, np.inf, 2, 1, 3, 1])
     got = density(t, scene, thing, wi, far)
-    t.require(bool(got[0] > 0), "the front of a lamp has a density above 0")
-    told = ("", "a wall", "nothing", "a ball", "the back of a lamp", "a lamp's edge", "a wall")
+    t.require(bool(got[0] > 0), "the front of a light has a density above 0")
+    told = (
+        "",
+        "a wall",
+        "nothing",
+        "a ball",
+        "the back of a light",
+        "the edge of a light",
+        "a wall",
+    )
     for k in range(1, len(thing)):
         t.require(bool(got[k] == 0), f"{told[k]} must have density 0, exactly")

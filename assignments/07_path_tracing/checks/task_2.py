@@ -17,10 +17,10 @@ def weights_of(t, pdf, other):
     "07.2.values",
     points=3,
     hint="equation (7): the squares of densities",
-    sole="three numbers that can be worked out by head",
+    sole="three numbers that can be worked out by hand",
 )
 def known_weights(t):
-    """Three times as dense: nine parts of ten. As dense: half."""
+    """Three times the density: 0.9. Equal densities: one half."""
     s = float(t.rng.uniform(0.1, 10))
     got = weights_of(t, [3 * s, s, s, 2 * s], [s, 3 * s, s, s])
     t.close("weights of 3:1, 1:3, 1:1, 2:1", got, [0.9, 0.1, 0.5, 0.8], reveal=True)
@@ -29,8 +29,8 @@ def known_weights(t):
 @check(
     "07.2.sum",
     points=2,
-    hint="what one strategy leaves is the other one's",
-    sole="no light is counted twice, and none forgotten",
+    hint="the weights of the two strategies sum to 1",
+    sole="no light is counted twice, and none is lost",
 )
 def weights_sum_to_one(t):
     """Over both strategies the weights sum to 1."""
@@ -44,11 +44,11 @@ def weights_sum_to_one(t):
     "07.2.extremes",
     points=2,
     hint="divide by the larger of the two before you square",
-    sole="mirrors have densities without bound, and what cannot be drawn has none",
+    sole="densities of mirrors are unbounded, and some directions have density 0",
 )
 def weights_at_the_ends(t):
-    """A density of 0, or of 1e200: 0, 1, or by their ratio; never infinite."""
+    """A density of 0, or of 1e200: 0, 1, or their ratio; never infinite."""
     s = float(t.rng.uniform(0.5, 1.0))
     got = weights_of(t, [0, 0, s, 1e200, 2e200 * s, 3e-200], [0, s, 0, 1, 1e200 * s, 1e-200])
-    t.require(bool((got[:2] == 0).all()), "what could not be drawn has weight 0, exactly")
+    t.require(bool((got[:2] == 0).all()), "a sample of density 0 has weight 0, exactly")
     t.close("weights", got[2:], [1, 1, 0.8, 0.9], reveal=True)

@@ -17,11 +17,11 @@ def played(t, beta, u):
 @check(
     "07.4.values",
     points=2,
-    hint="equations (11) and (12): the brightest channel decides, u < q goes on",
-    sole="one path that goes on and one that ends",
+    hint="equations (11) and (12): the largest channel decides, u < q continues",
+    sole="one path that continues and one that ends",
 )
 def known_ends(t):
-    """A path with (0.2, 0.5, 0.1) goes on in half of all cases, as (0.4, 1, 0.2); dark ones too."""
+    """A path with (0.2, 0.5, 0.1) continues half of the time with (0.4, 1, 0.2); small beta too."""
     u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0, 0.5]
     beta, alive = played(t, [[0.2, 0.5, 0.1]] * 4, u)
     right = [True, False, True, False]
@@ -31,23 +31,24 @@ def known_ends(t):
     beta, alive = played(t, np.outer(q, [0.4, 1, 0.2]), t.rng.uniform(0.1, 0.9) * q)
     t.require(bool(alive.all()), "a path with u < q has ended: q is 0.1 or 0.001")
     t.close(
-        "beta of dark paths",
+        "beta of paths with small throughput",
         beta,
         np.tile([0.4, 1, 0.2], (2, 1)),
         reveal=True,
-        hint="1 / q is 10 and 1000 here, and nothing may limit it: those who go on speak for "
-        "all who have ended",
+        hint=(
+            "1 / q is 10 and 1000 here and must not be limited: it compensates for all ended paths"
+        ),
     )
 
 
 @check(
     "07.4.mean",
     points=3,
-    hint="who goes on carries 1 / q, for those who do not",
+    hint="a surviving path is multiplied by 1 / q, which compensates for the others",
     sole="roulette must not change the mean",
 )
 def the_mean_is_kept(t):
-    """Over 1000 values of u, evenly spread, the mean of beta is what it was."""
+    """Over 1000 evenly spaced values of u the mean of beta is unchanged."""
     u = (np.arange(1000) + 0.5) / 1000
     for _ in range(4):
         beta = t.rng.integers(1, 999, 3) / 1000
@@ -58,16 +59,16 @@ def the_mean_is_kept(t):
 @check(
     "07.4.ends",
     points=2,
-    hint="q is at most 1; and where q is 0 nothing may be divided by it",
-    sole="bright paths stay as they are, and dark ones end",
+    hint="q is at most 1; and where q is 0 do not divide by it",
+    sole="large throughput is unchanged, and zero ends",
 )
 def bright_and_dark_paths(t):
-    """A channel of 1 or more: goes on unchanged, always. Black: ends, always."""
+    """A channel of 1 or more: always continues, unchanged. Zero: always ends."""
     bright = t.rng.uniform(0, 3, (20, 3))
     bright[:, 1] = t.rng.uniform(1, 3, 20)
     u = np.append(t.rng.random(18), [0.0, 1 - 2**-53])
     beta, alive = played(t, bright, u)
     t.require(bool(alive.all()), "a path with a channel of 1 or more has ended")
-    t.close("beta of bright paths", beta, bright)
+    t.close("beta of paths with large throughput", beta, bright)
     beta, alive = played(t, np.zeros((20, 3)), u)
-    t.require(not alive.any() and not beta.any(), "a black path goes on")
+    t.require(not alive.any() and not beta.any(), "a path with beta = 0 continues")

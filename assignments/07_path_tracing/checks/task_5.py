@@ -33,11 +33,11 @@ def traced(t, scene, origins, directions, depth):
     "07.5.emitted",
     points=2,
     tolerance=EXACT,
-    hint="a path of one piece ends at a lamp, or brings nothing",
-    sole="what is seen by itself, exactly",
+    hint="a path of one segment ends at a light, or contributes 0",
+    sole="emission toward the camera, exactly",
 )
 def depth_one(t):
-    """One straight piece: what lamps emit from their fronts. A black lamp shows no more, ever."""
+    """One segment: emission of the fronts of lights. A black light does not depend on the depth."""
     shine = t.rng.uniform(0.5, 3, 3)
     scene = scene_of(
         [
@@ -51,35 +51,34 @@ def depth_one(t):
     t.close("depth 1", traced(t, scene, origins, directions, 1), right, reveal=True)
     for depth in (2, 4):
         got = traced(t, scene, origins, directions, depth)
-        t.close(f"a black lamp and nothing, at depth {depth}", got[[0, 1, 3]], right[[0, 1, 3]])
+        t.close(f"a black light and nothing, at depth {depth}", got[[0, 1, 3]], right[[0, 1, 3]])
 
 
-# What the best known mistakes say of themselves by the mean that they have.
+# Messages for the most common mistakes, recognized by their means.
 AGAIN = (
-    "what a path meets after a bounce adds its emission: direct light at the place before has "
-    "counted it already"
+    "emission is added at a hit after a bounce: direct light at the vertex before "
+    "has counted it already"
 )
-ANEW = (
-    "beta is started anew, or left out: it is the product of all surfaces since the viewer, "
-    "equation (14)"
+ANEW = "beta is reset, or missing: it is the product over all vertices of the path, equation (14)"
+LAST = (
+    "beta is the factor of the last vertex only; equation (14) multiplies it by the previous beta"
 )
-LAST = "beta is that of the last surface alone; equation (14) multiplies it by the one before"
-EARLY = "beta is multiplied before direct light is added: at each place direct light comes first"
-DARK = "what the first place emits towards the viewer is missing"
-FEWER = "a piece too few: direct light is asked for depth - 1 times"
-MORE = "a piece too many: direct light is asked for depth - 1 times"
+EARLY = "beta is updated before direct light is added: at each vertex direct light comes first"
+DARK = "the emission at the first hit is missing"
+FEWER = "one segment too few: direct_light is called depth - 1 times"
+MORE = "one segment too many: direct_light is called depth - 1 times"
 
 
 @check(
     "07.5.integral",
     points=3,
-    hint="two straight pieces are direct light and what is emitted, nothing else",
+    hint="two segments are direct light and emission, nothing else",
     sole="depth two is the integral of assignment 04",
 )
 def depth_two(t):
-    """Emission plus the integral over all directions; more pieces change nothing where none lead.
+    """Emission plus direct light; more segments change nothing where there is no further light.
 
-    First two pieces in a closed room. Then a floor that sees a black lamp and nothing besides.
+    First two segments in a closed room. Then a floor that sees a black light and nothing else.
     """
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.uniform(0.2, 0.8, 3)
     scene = scene_of(cube(emission=shine, base_color=color))
@@ -113,24 +112,25 @@ def depth_two(t):
     for depth in (2, 4):
         require_mean(
             t,
-            f"a floor beside a lamp, depth {depth}",
+            f"a floor beside a light, depth {depth}",
             lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d),
             right,
             [(2 * right, AGAIN), (right * color, EARLY)],
-            hint="the floor sees a black lamp and nothing else: direct light at its one "
-            "place is all there is, at any depth",
+            hint=(
+                "the floor sees a black light and nothing else: direct light at its "
+                "point is the result, at any depth"
+            ),
         )
 
 
 @check(
     "07.5.corner",
     points=2,
-    hint="three pieces: the direction of the material leads to the wall, and there "
-    "direct light is asked for again, times what the floor reflects of it",
-    sole="light from where the path went, and from nowhere else",
+    hint="three segments: the BSDF sample hits the wall; add direct light there times beta",
+    sole="light from the vertices of the path, and from nowhere else",
 )
 def around_a_corner(t):
-    """A floor that sees a lamp's back, and a wall on which it shines: three straight pieces."""
+    """A floor that sees the back of a light, and a wall that the light lights: three segments."""
     floor, wall, shine = t.rng.uniform(0.3, 0.6, 3), t.rng.uniform(0.4, 0.9, 3), 5.0
     lamp = ((0.4, 1.3, -0.4), (0, 0.6, 0), (0, 0, 0.8))
     scene = scene_of(
@@ -154,8 +154,10 @@ def around_a_corner(t):
         [
             (
                 right / floor,
-                "the wall's light counts as if the floor reflected all of it: is "
-                "beta multiplied by reflectance times cosine over density, (14)?",
+                (
+                    "the light of the wall counts as if the floor reflected all of it: "
+                    "is beta multiplied by f cos / q, equation (14)?"
+                ),
             ),
             (right * wall, EARLY),
             (0 * right, FEWER),
@@ -165,7 +167,7 @@ def around_a_corner(t):
 
 
 def rays_inside(t, n):
-    """Rays from a place in the cube into all directions."""
+    """Rays from a point in the cube in all directions."""
     d = unit_vectors(t.rng, n)
     return np.tile(t.rng.uniform(-0.5, 0.5, 3), (n, 1)), d
 
@@ -173,13 +175,15 @@ def rays_inside(t, n):
 @check(
     "07.5.furnace",
     points=4,
-    hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
-    "multiplies once, and lamps that a path finds by chance are counted already",
-    sole="a room whose light is a geometric series",
+    hint=(
+        "equation (15): e (1 + a + a^2 + ...), as many terms as segments; each vertex "
+        "multiplies once, and lights that a path hits after a bounce are counted already"
+    ),
+    sole="a room whose radiance is a geometric series",
 )
 def a_room_that_shines(t):
-    """A closed room that shines and reflects everywhere: a geometric series, by depth."""
-    # Roulette has no say before depth 5, so that at 4 mistakes have means in closed form.
+    """A closed room that emits and reflects everywhere: a geometric series in the depth."""
+    # Roulette begins at depth 5, so that at 4 mistakes have means in closed form.
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.permutation([0.3, 0.5, 0.8])
     scene = scene_of(cube(emission=shine, base_color=color))
     origins, directions = rays_inside(t, 1000)
@@ -200,6 +204,8 @@ def a_room_that_shines(t):
         "depth 9",
         lambda: traced(t, scene, origins, directions, 9),
         shine * (1 - color**9) / (1 - color),
-        hint="depth 4 is right, and roulette begins after it: what it returns is the new "
-        "beta, (12), of the paths that go on",
+        hint=(
+            "depth 4 is right, and roulette begins after it: its result is the new beta "
+            "(12) of the surviving paths"
+        ),
     )

@@ -24,7 +24,9 @@ from .common import (
 
 check = checks_for(calls=("direct_light_backward",), needs=(*TASK_3, "direct_light"))
 
-GATE = Tolerance(1e-6, "central differences leave 1e-9, wrong ones are off by 1e-3 or more")
+GATE = Tolerance(
+    1e-6, ("central differences have an error of 1e-9, wrong solutions of 1e-3 or more")
+)
 
 
 def slopes(t, scene, hit, d, u=None):
@@ -36,7 +38,7 @@ def slopes(t, scene, hit, d, u=None):
 
 
 def small_scene(t, n):
-    """A scene of three things, two of them glossy, and places on those."""
+    """A scene of three primitives, two of them glossy, and points on those."""
     glossy = [
         {
             "base_color": t.rng.uniform(0.2, 0.8, 3),
@@ -57,11 +59,11 @@ def small_scene(t, n):
     "07.6.differences",
     points=5,
     tolerance=GATE,
-    hint="equation (17): reflectance is differentiated, all that was drawn stays",
+    hint="equation (17): differentiate the BRDF; samples, densities and weights are held fixed",
     sole="the definition: your own direct light, its proposal held fixed",
 )
 def the_gradient_agrees_with_differences(t):
-    """Against differences of your own `direct_light` whose proposal stays as it is."""
+    """Compared with finite differences of your own `direct_light` at a fixed proposal."""
     scene, hit = small_scene(t, 40)
     u, d = t.rng.random((2, 40, 3)), random_cotangent(t.rng, (40, 3))
 
@@ -73,8 +75,8 @@ def the_gradient_agrees_with_differences(t):
 
 
 ROWS = (
-    "a thing has many rows, and all of them add up; d[things] += rows keeps the last row of "
-    "each thing alone: see np.add.at"
+    "a primitive has many rows, which must be summed; d[things] += rows keeps only "
+    "the last row of each: see np.add.at"
 )
 
 
@@ -83,11 +85,11 @@ ROWS = (
     points=2,
     needs=TASK_3,
     tolerance=GATE,
-    hint="it is linear in d_radiance, and what was not seen has no derivative",
+    hint="it is linear in d_radiance, and primitives that were not hit have no derivative",
     sole="what must be zero, and what must double",
 )
 def zeros_and_doubles(t):
-    """Zero for zero; twice for twice; matte things have no roughness; the unseen nothing at all."""
+    """Zero for zero; twice for twice; no roughness of matte primitives; zero for unseen ones."""
     scene, hit = small_scene(t, 30)
     scene["matte"][2] = True
     u, d = t.rng.random((2, 30, 3)), random_cotangent(t.rng, (30, 3))
@@ -98,12 +100,12 @@ def zeros_and_doubles(t):
         t.close(f"d_{name} for twice the cotangent", twice[name], 2 * once[name])
     t.require(
         not (once["base_color"][1].any() or once["roughness"][1]),
-        "a thing that the hit does not contain has a derivative",
+        "a primitive that the hit does not contain has a derivative",
     )
-    t.require(once["roughness"][2] == 0, "a matte thing has a derivative by roughness")
+    t.require(once["roughness"][2] == 0, "a matte primitive has a roughness derivative")
     turned = {**scene, "edges_u": scene["edges_v"], "edges_v": scene["edges_u"]}
     for name, values in slopes(t, turned, hit, d, u).items():
-        t.require(not values.any(), f"d_{name} below a lamp's back is not zero")
+        t.require(not values.any(), f"d_{name} below the back of a light is not zero")
     again = {name: np.concatenate([values, values]) for name, values in hit.items()}
     more = slopes(t, scene, again, np.tile(d, (2, 1)), np.tile(u, (1, 2, 1)))
     for name in once:
@@ -114,8 +116,7 @@ def zeros_and_doubles(t):
     hidden["balls"] = scene["balls"]
     for name, values in slopes(t, hidden, hit, d, all_draw(t, 30, 0.1)).items():
         t.require(
-            not values.any(),
-            f"d_{name} is not zero where another lamp hides the one that was drawn",
+            not values.any(), f"d_{name} is not zero where another light occludes the sampled one"
         )
 
 
@@ -163,11 +164,11 @@ def the_mean_of_the_gradient(t):
 @check(
     "07.6.cost",
     points=1,
-    hint="one pass over the same samples gives the derivative by everything",
-    sole="differences would pay two renderings for each number",
+    hint="one pass over the same samples gives all derivatives",
+    sole="finite differences would take two renderings per number",
 )
 def the_gradient_is_cheap(t):
-    """A scene of 100 things: the gradient costs at most 20 times what direct light costs."""
+    """A scene of 100 primitives: the gradient costs at most 20 times as much as direct light."""
     scene, hit = small_scene(t, 30)
     things = [flake(base_color=0.5, roughness=0.5, metalness=0.5)] * 97
     more = scene_of(things)
@@ -175,7 +176,7 @@ def the_gradient_is_cheap(t):
     u, d = t.rng.random((2, 30, 3)), random_cotangent(t.rng, (30, 3))
     n = len(scene["matte"])
     parts = Items(Array((n, 3)), Array((n,)))
-    # Where nobody can measure (a student's machine) there must be a gradient at least.
+    # Where cost is not measured (a student's machine) there must be a gradient at least.
     got = t.call("direct_light_backward", scene, hit, u[0], u[1], d, returns=parts)
     t.require(bool(got[0].any() and got[1].any()), "the gradient is zero everywhere")
     require_cheap(

@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance
@@ -9,12 +9,12 @@ EXACT = Tolerance(
     1e-12, "right ones differ by at most 8e-15, the nearest wrong one (product_of_rests) by 8e-11"
 )
 GATE = Tolerance(
-    1e-6, "differences leave 1e-10, the nearest wrong one (adjoint_inclusive) 1.7e-4 in thin air"
+    1e-6, "finite differences leave 1e-10, the nearest wrong one (adjoint_inclusive) 1.7e-4"
 )
 
 
 def seen(rays, channels):
-    """What `composite` returns."""
+    """Result of `composite`."""
     return Items(Array((rays, channels)), Array((rays,)), names=("pixel", "T_end"))
 
 
@@ -33,6 +33,6 @@ def random_box(t):
 
 
 def between_centers(t, shape, n):
-    """Random places (n, 3) that no border touches."""
+    """Random points (n, 3) that no border touches."""
     rim = 0.5 / np.array(shape)
     return t.rng.uniform(rim, 1 - rim, (n, 3))

@@ -120,11 +120,11 @@ def cutting_a_step_changes_nothing(t):
 @check(
     "08.1.extremes",
     points=2,
-    hint="mend the checks above first; if they pass: handout, end of section 1",
-    sole="all digits, from thin air to a wall",
+    hint="fix the checks above first; if they pass: handout, end of section 1",
+    sole="all digits, from a thin medium to a wall",
 )
 def thin_air_and_walls(t):
-    """Air so thin that it can hardly be seen, and a wall that hides what is behind it."""
+    """A very thin medium, and an opaque wall that occludes everything behind it."""
     color = t.rng.uniform(0.2, 1.0, (1, 4, 2))
     dt = t.rng.uniform(0.5, 1.0, (1, 4))
     thin = t.rng.uniform(1.0, 3.0, (1, 4)) * 1e-8
@@ -137,7 +137,7 @@ def thin_air_and_walls(t):
     rounded = np.einsum("rs,rsc->rc", (1 - np.exp(-s)) * (1 - before), color)
     lost = np.allclose(pixel, rounded, rtol=1e-13, atol=0.0)
     t.close(
-        "pixel of thin air",
+        "pixel of a thin medium",
         pixel,
         np.einsum("rs,rsc->rc", s - second, color),
         reveal=True,

@@ -14,13 +14,13 @@ check = checks_for(calls=("composite_adjoint",), needs=("composite",), tolerance
 
 
 def slopes_of(shape, channels):
-    """What `composite_adjoint` returns for sigma of this shape."""
+    """Result of `composite_adjoint` for sigma of this shape."""
     parts = (Array(shape), Array((*shape, channels)), Array((channels,)))
     return Items(*parts, names=("d_sigma", "d_color", "d_background"))
 
 
 def against_differences(t, sigma, color, dt, background, groups=("sigma", "color", "background")):
-    """`composite_adjoint` against differences of your own `composite`, each group alone."""
+    """`composite_adjoint` against finite differences of your own `composite`, each group alone."""
     rays, channels = len(sigma), color.shape[2]
     point = {"sigma": sigma, "color": color, "background": background}
     d_pixel, d_T_end = t.rng.uniform(-1, 1, (rays, channels)), t.rng.uniform(-1, 1, rays)
@@ -54,7 +54,7 @@ def against_differences(t, sigma, color, dt, background, groups=("sigma", "color
     sole="the gradient itself, without the reference",
 )
 def agrees_with_differences(t):
-    """Moving one number a little moves your pixels and T_end as your adjoint says."""
+    """A small change of one number changes your pixels and T_end as your adjoint says."""
     against_differences(t, *random_rays(t))
 
 
@@ -65,7 +65,7 @@ def agrees_with_differences(t):
     sole="nearly empty rays: what is behind everything decides",
 )
 def nearly_empty_rays(t):
-    """In thin air nearly all of the pixel is background, and adding extinction hides it."""
+    """In a thin medium nearly all of the pixel is background, and adding extinction hides it."""
     sigma, color, dt, background = random_rays(t)
     against_differences(t, 0.01 * sigma, color, dt, 2 * background, ("sigma", "background"))
     d_pixel, d_T_end = t.rng.uniform(0.5, 1, (2, 2)), t.rng.uniform(-3, -2, 2)
@@ -108,7 +108,7 @@ def nearly_empty_rays(t):
     sole="the definition of an adjoint, to the last digits",
 )
 def is_the_transpose_in_the_colors(t):
-    """<pixel, g> = <color, d_color> + <background, d_background>, and rays add up."""
+    """<pixel, g> = <color, d_color> + <background, d_background>, summed over rays."""
     sigma, color, dt, background = random_rays(t)
     g, none = t.rng.uniform(-1, 1, (3, 3)), np.zeros(3)
     back = t.call(
@@ -151,7 +151,7 @@ def is_the_transpose_in_the_colors(t):
     "08.2.units",
     points=2,
     tolerance=EXACT,
-    hint="sigma enters as sigma * dt only: what does the chain rule add on the way back?",
+    hint="sigma enters as sigma * dt only: what does the chain rule add in the backward pass?",
     sole="asks for the step length alone, which neither sign nor direction shows",
 )
 def centimeters_instead_of_meters(t):
@@ -178,12 +178,12 @@ def centimeters_instead_of_meters(t):
 @check(
     "08.2.walls",
     points=2,
-    hint="mend 08.2.differences first; if it passes: behind a wall T is 0, which cannot be "
-    "divided by, and in thin air 1 - exp(-x) loses digits",
+    hint="fix 08.2.differences first; if it passes: behind a wall T is 0, which cannot be "
+    "divided by, and in a thin medium 1 - exp(-x) loses digits",
     sole="finite numbers where a formula divides 0 by 0",
 )
 def walls_and_thin_air(t):
-    """Steps of optical depth 50 and 2000, and of 1e-8: finite, and as differences say."""
+    """Steps of optical depth 50 and 2000, and of 1e-8: finite, and as finite differences say."""
     sigma, color, dt, background = random_rays(t, rays=2)
     sigma[0, 3] = 50.0 / dt[0, 3]
     sigma[1, 3] = 2000.0 / dt[1, 3]
@@ -196,4 +196,4 @@ def walls_and_thin_air(t):
         "composite_adjoint", *given, g, np.zeros(2), returns=slopes_of((2, 4), 3)
     )
     pixel, _ = t.call("composite", *given, returns=seen(2, 3))
-    t.close("<color, d_color> in thin air", np.vdot(faint, d_color), np.vdot(pixel, g), EXACT)
+    t.close("<color, d_color> in a thin medium", np.vdot(faint, d_color), np.vdot(pixel, g), EXACT)

@@ -12,7 +12,7 @@ BOXES = Tolerance(EXACT.relative, EXACT.evidence, floor=1.0)
 
 
 def spans(rays):
-    """What `ray_box` returns."""
+    """Result of `ray_box`."""
     return Items(Array((rays,)), Array((rays,)), names=("t_near", "t_far"))
 
 
@@ -31,7 +31,7 @@ def on_face(points, low, high):
     sole="three rays that can be checked with a ruler",
 )
 def along_the_axes(t):
-    """Rays along the axes, forwards and backwards, enter and leave where a ruler says."""
+    """Rays along the axes, forward and backward, enter and leave where a ruler says."""
     low, high = random_box(t)
     middle, gap = (low + high) / 2, t.rng.uniform(0.5, 2.0, 3)
     for sign in (1.0, -1.0):
@@ -49,7 +49,7 @@ def along_the_axes(t):
     sole="any direction, without knowing the answer",
 )
 def ends_lie_on_the_surface(t):
-    """Rays towards a point inside enter and leave on the surface, whatever their length."""
+    """Rays toward a point inside enter and leave on the surface, whatever their length."""
     low, high = random_box(t)
     inside = t.rng.uniform(low, high, (40, 3))
     direction = t.rng.normal(size=(40, 3))
@@ -76,7 +76,7 @@ def ends_lie_on_the_surface(t):
     "08.3.inside",
     points=2,
     hint="a ray begins at t = 0: what lies before that is behind the camera",
-    sole="asks about what lies behind the eye",
+    sole="tests what lies behind the camera",
 )
 def starts_inside_or_behind(t):
     """From inside, a ray starts at 0; with the box behind it or beside it, it gets (0, 0)."""

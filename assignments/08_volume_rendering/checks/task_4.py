@@ -16,7 +16,7 @@ check = checks_for(calls=("trilinear",), tolerance=EXACT)
     sole="says that coordinates and axes are right, whatever the weights",
 )
 def a_center_gives_its_voxel(t):
-    """In the middle of a voxel the sample is that voxel."""
+    """At the center of a voxel the sample is that voxel."""
     grid = t.rng.uniform(-1.0, 1.0, (2, 5, 3, 2))
     got = t.call("trilinear", grid, cell_centers((2, 5, 3)), returns=Array((30, 2)))
     t.close("samples", got, grid.reshape(30, 2), reveal=True)
@@ -50,7 +50,7 @@ def products_stay_products(t):
     sole="says that only the border is wrong",
 )
 def the_border_holds(t):
-    """Beyond the outermost centers, and beyond the box, the value at the border holds."""
+    """Beyond the outermost centers, and beyond the box, the value at the border is repeated."""
     shape = (3, 2, 4)
     grid = t.rng.uniform(-1.0, 1.0, (*shape, 2))
     corners = np.array(list(np.ndindex(2, 2, 2)), np.float64)

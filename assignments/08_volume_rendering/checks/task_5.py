@@ -14,10 +14,10 @@ check = checks_for(calls=("trilinear_adjoint",), tolerance=EXACT)
     "08.5.single",
     points=2,
     hint="g times the weight that the voxel had in the sample",
-    sole="asks about one sample, without the forward function",
+    sole="tests one sample, without the forward function",
 )
 def one_sample_is_spread_around_its_place(t):
-    """What one sample hands out sums to g, and is balanced around the sample's place."""
+    """What one sample scatters sums to g, and is balanced around the sample's point."""
     shape = (4, 2, 5)
     for _ in range(5):
         u, g = between_centers(t, shape, 1), t.rng.uniform(0.5, 2.0, (1, 1))
@@ -34,11 +34,11 @@ def one_sample_is_spread_around_its_place(t):
     "08.5.transpose",
     points=3,
     needs=("trilinear",),
-    hint="the same weights as forwards, from sample to voxel; do repeated places add up?",
+    hint="the weights of the forward pass, from sample to voxel; are repeated points summed?",
     sole="the definition of an adjoint",
 )
 def the_adjoint_is_the_transpose(t):
-    """<S x, g> = <x, S* g> for any grid x and any g, also where places repeat."""
+    """<S x, g> = <x, S* g> for any grid x and any g, also where points repeat."""
     for shape in ((3, 2, 4), (1, 5, 2)):
         u = t.rng.uniform(-0.1, 1.1, (15, 3))
         u = np.concatenate([u, u[:5]])
@@ -58,7 +58,7 @@ def the_adjoint_is_the_transpose(t):
     sole="names the mistake of a scatter that forgets",
 )
 def repeated_places_add_up(t):
-    """A place sampled ten times hands out the sum of its ten numbers."""
+    """A point sampled ten times scatters the sum of its ten numbers."""
     shape = (3, 4, 2)
     u, g = t.rng.uniform(0.0, 1.0, (3, 3)), t.rng.uniform(0.5, 1.5, (30, 2))
     many = t.call("trilinear_adjoint", shape, np.tile(u, (10, 1)), g, returns=Array((3, 4, 2, 2)))

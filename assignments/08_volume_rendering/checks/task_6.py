@@ -24,7 +24,7 @@ def random_view(t, rays=5, shape=(3, 2, 4)):
 
 
 def slopes_of_view(shape):
-    """What `render_adjoint` returns."""
+    """Result of `render_adjoint`."""
     return Items(Array((*shape, 4)), Array((3,)), names=("d_grid", "d_background"))
 
 
@@ -32,11 +32,11 @@ def slopes_of_view(shape):
     "08.6.differences",
     points=4,
     tolerance=GATE,
-    hint="walk render_rays backwards, line by line: what does each line's adjoint need?",
-    sole="the gradient of the picture, without the reference",
+    hint="walk render_rays backward, line by line: what does each line's adjoint need?",
+    sole="the gradient of the image, without the reference",
 )
 def the_picture_agrees_with_differences(t):
-    """Moving one voxel a little moves the picture as your adjoint says."""
+    """A small change of one voxel changes the image as your adjoint says."""
     grid, low, high, origins, directions = random_view(t)
     background, d_pixel = t.rng.uniform(0.0, 1.0, 3), t.rng.uniform(-1.0, 1.0, (5, 3))
     view = (low, high, origins, directions, 6)
@@ -57,11 +57,11 @@ def the_picture_agrees_with_differences(t):
     "08.6.rays",
     points=3,
     tolerance=EXACT,
-    hint="a ray that misses sees the background alone; derivatives of all rays add up",
+    hint="a ray that misses sees the background alone; derivatives of all rays are summed",
     sole="which voxels and which rays: no derivative is needed for that",
 )
 def rays_add_up_and_misses_see_the_background(t):
-    """Rays add up; one that misses moves the background alone; untouched voxels get nothing."""
+    """Sums over rays; a miss affects the background only; untouched voxels get zero."""
     grid, low, high, origins, directions = random_view(t, shape=(4, 5, 3))
     background, d_pixel = t.rng.uniform(0.0, 1.0, 3), t.rng.uniform(-1.0, 1.0, (5, 3))
     back = t.call(

@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance
@@ -8,7 +8,7 @@ from photograd_course.grading import Array, Items, Number, Tolerance
 EXACT = Tolerance(
     1e-11, "right ones differ by at most 1e-15, the nearest wrong one (psnr_capped) by 6e-10"
 )
-GATE = Tolerance(1e-6, "differences leave 2e-10, the nearest wrong one (mse_root) 0.2")
+GATE = Tolerance(1e-6, "finite differences leave 2e-10, the nearest wrong one (mse_root) 0.2")
 
 
 def looking(place, roll=0.0):
@@ -54,7 +54,7 @@ def random_views(t, count=2, rows=3, columns=4):
 
 
 def batch(n):
-    """What `ray_batch` returns."""
+    """Result of `ray_batch`."""
     return Items(
         Array((n, 3)), Array((n, 3)), Array((n, 3)), names=("origins", "directions", "truth")
     )

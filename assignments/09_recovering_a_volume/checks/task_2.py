@@ -33,11 +33,11 @@ def the_middle_pixel_looks_forward(t):
 @check(
     "09.2.projected",
     points=4,
-    hint="handout, equations (4) to (6): what projects to the middle of that pixel?",
+    hint="handout, equations (4) to (6): what projects to the center of that pixel?",
     sole="needs no formula for a ray: only that it is seen where it should be",
 )
 def points_of_a_ray_are_seen_in_its_pixel(t):
-    """A point on a ray projects to the middle of the pixel, in pictures of any shape."""
+    """A point on a ray projects to the center of the pixel, in pictures of any shape."""
     for rows, columns in ((3, 5), (6, 4)):
         views = random_views(t, 2, rows, columns)
         chosen = t.rng.permutation(2 * rows * columns)[:9]
@@ -48,7 +48,7 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
         seen = np.einsum("rji,rj->ri", pose[:, :3, :3], point - pose[:, :3, 3])
         t.require(
             bool((seen[:, 2] > 0).all()),
-            "a ray goes backwards: forward is +z",
+            "a ray goes backward: forward is +z",
             hint="if 09.2.middle fails too, look there first",
         )
         places = views["focal"] * seen[:, :2] / seen[:, 2:] + [columns / 2, rows / 2]
@@ -64,7 +64,7 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
     "09.2.truth",
     points=2,
     hint="pixels are counted as they lie in memory: picture by picture, row by row",
-    sole="asks about the colors alone",
+    sole="tests the colors only",
 )
 def colors_belong_to_the_chosen_pixels(t):
     """The colors are those of the chosen pixels, in that order, repeated ones too."""

@@ -67,7 +67,7 @@ def slope_of_loss(t, pixels, truth):
     sole="the derivative itself, without the reference",
 )
 def the_cotangent_agrees_with_differences(t):
-    """Moving a pixel by a little moves your loss as your derivative says."""
+    """A small change of a pixel changes your loss as your derivative says."""
     d, expected = slope_of_loss(t, *t.rng.uniform(0.0, 1.0, (2, 5, 3)))
     t.require(bool(expected.any()), "your loss does not change with the pixels")
     t.close("d_pixels", d, expected, GATE, hint=advice_on_loss(t))
@@ -85,7 +85,7 @@ RENDERER = (
     calls=("mse_and_cotangent", "render_rays", "render_adjoint"),
     needs=("ray_batch",),
     seconds=PATIENCE,
-    hint="mend what fails above first",
+    hint="fix what fails above first",
     sole="no fit before the gradient is proved: with your renderer of 08",
 )
 def from_photographs_to_voxels(t):

@@ -18,7 +18,7 @@ ROUGHNESS = (
 def the_roughness_of_ramps(t):
     """The loss of even slopes has a closed form: inside, on a border, along an edge; flat has 0."""
     flat, slope = rough(t, np.full((3, 2, 4, 2), 0.7), 0.1)
-    t.require(abs(flat) < 1e-14, "the roughness of what is flat must be 0")
+    t.require(abs(flat) < 1e-14, "the total variation of what is flat must be 0")
     t.require(not np.abs(slope).max() > 1e-14, "the derivative of what is flat must be 0")
     shape = np.array([4, 3, 5])
     a, eps = t.rng.uniform(0.2, 0.6, 3), float(t.rng.uniform(0.1, 0.3))
@@ -42,7 +42,7 @@ def the_roughness_of_ramps(t):
     sole="the gradient itself, without the reference",
 )
 def the_slope_of_roughness_agrees_with_differences(t):
-    """Moving a number moves your roughness as your derivative says, one voxel wide grids too."""
+    """A small change of a number changes your total variation as your derivative says."""
     for shape, eps in (((3, 4, 2, 2), 0.3), ((1, 3, 2, 1), 0.1), ((2, 1, 1, 2), 1.0)):
         grid = t.rng.uniform(0.0, 1.0, shape)
         _, d_grid = rough(t, grid, eps)

@@ -66,7 +66,7 @@ def small_start(t, shape=(3, 2, 4)):
     points=4,
     tolerance=CHAINED,
     hint="handout, equations (13) to (16), in this order",
-    sole="asks about the first two steps alone",
+    sole="tests the first two steps only",
 )
 def the_first_steps(t):
     """With few pixels a step sees all of them: two steps of Adam end where your derivatives say."""
@@ -129,7 +129,7 @@ def each_step_draws_its_own_pixels(t):
     "09.6.falls",
     points=3,
     hint="downhill is against the derivative",
-    sole="from any start, on any scene: the least that a descent owes",
+    sole="from any start, on any scene",
 )
 def the_first_step_goes_down(t):
     """For 20 scenes, one step from fog lowers the loss of the photographs."""

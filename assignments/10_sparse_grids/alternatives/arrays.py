@@ -1,7 +1,5 @@
 """Whole arrays only: tree from the cells upwards, slots claimed in rounds, growth axis by axis."""
 
-from __future__ import annotations
-
 import numpy as np
 from sparse_grids import (
     START,
@@ -59,7 +57,7 @@ def skip_empty(leaf, first, stride, count):
 
 
 def voxel_hash_insert(table, voxels, rows):
-    # All look at once; of those who want the same free slot, the first in the list gets it.
+    # All search at once; of several voxels at one free slot, the first in the list gets it.
     table = np.array(table)
     _, last = np.unique(voxels[::-1], axis=0, return_index=True)
     keep = np.sort(len(voxels) - 1 - last)

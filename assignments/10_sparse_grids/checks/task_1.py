@@ -63,7 +63,7 @@ def the_tree_says_what_the_cube_says(t):
     sole="the exact formula for the memory",
 )
 def one_cell_costs_eight_nodes_a_level(t):
-    """One odd cell among n^3 equal ones: 1 + 8 log2 n nodes, wherever it is."""
+    """One full cell among n^3 equal ones: 1 + 8 log2 n nodes, wherever it is."""
     for levels in (0, 1, 2, 3, 4):
         n = 2**levels
         for odd in (True, False):

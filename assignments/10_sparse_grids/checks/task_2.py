@@ -10,14 +10,14 @@ check = checks_for(calls=("skip_empty",))
 
 
 def counting_leaf(full, asked, most=np.inf):
-    """A service that tells the leaf of places and notes in `asked` how many there were."""
+    """A service that tells the leaf of points and notes in `asked` how many there were."""
     n, side = len(full), equal_cubes(full)
 
     def leaf(places):
         if not (isinstance(places, np.ndarray) and places.ndim == 2 and places.shape[1] == 3):
             raise CheckFailed("skip_empty: leaf wants places, an array of shape (M, 3)")
         if not ((places > -1e-6) & (places < n + 1e-6)).all():
-            raise CheckFailed("skip_empty: a place that was asked for lies outside of the cube")
+            raise CheckFailed("skip_empty: a point that was looked up lies outside of the cube")
         asked.append(len(places))
         if sum(asked) > most:
             raise CheckFailed(
@@ -47,9 +47,9 @@ def cells_on(first, stride, count):
 
 
 def skipped(t, full, first, stride, count):
-    """(wanted, places that were asked for)."""
+    """(wanted, points that were looked up)."""
     asked = []
-    # No ray has more questions than samples, unless it stands still; many more end the loop.
+    # No ray has more lookups than samples, unless it stands still; many more end the loop.
     most = 20 * len(first) * count + 200
     got = t.call(
         "skip_empty",
@@ -85,8 +85,8 @@ def samples_in_full_leaves(t):
 @check(
     "10.2.faces",
     points=2,
-    hint="a place on a common face belongs to the upper leaf: going down, the jump there is 0",
-    sole="places that a random ray never meets, and a lattice always",
+    hint="a point on a common face belongs to the upper leaf: going down, the jump there is 0",
+    sole="points that a random ray never meets, and a lattice always",
 )
 def samples_on_faces(t):
     """Samples that lie exactly on faces belong to the upper leaf, and nothing stands still."""
@@ -105,11 +105,11 @@ def samples_on_faces(t):
 @check(
     "10.2.cost",
     points=4,
-    hint="one question for each leaf that a ray passes; then over all samples in it at once",
-    sole="what skipping is for: questions are counted, not seconds",
+    hint="one lookup for each leaf that a ray passes; then over all samples in it at once",
+    sole="what skipping is for: lookups are counted, not seconds",
 )
 def a_leaf_is_asked_for_once(t):
-    """The samples are right, and for each leaf on a ray one place is asked for, not each sample."""
+    """The samples are right, and for each leaf on a ray one point is looked up, not each sample."""
     n, count = 16, 90
     full = np.zeros((n, n, n), bool)
     full[3:9, 4:12, 5:11] = full[12:14, 1:4, 8:15] = True
@@ -132,6 +132,6 @@ def a_leaf_is_asked_for_once(t):
         passed = len(leaf) + int((leaf[:, 1:] != leaf[:, :-1]).any(axis=2).sum())
         t.require(
             asked <= 1.3 * passed,
-            f"{asked} places were asked for; the rays pass {passed} leaves",
+            f"{asked} points were looked up; the rays pass {passed} leaves",
             hint=hint,
         )

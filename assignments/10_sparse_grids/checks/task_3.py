@@ -87,7 +87,7 @@ def require_sound(t, table, voxels, rows):
 @check(
     "10.3.found",
     points=3,
-    hint="handout, equation (9): the first free slot from the voxel's own onwards",
+    hint="handout, equation (9): the first free slot from the voxel's own onward",
     sole="asks what a table is for: voxel in, row out",
 )
 def what_was_put_in_is_found(t):

@@ -13,7 +13,7 @@ from photograd_course.grading.adjoint_gate import (
 EXACT = Tolerance(1e-11, "right ones differ by 1e-15, wrong ones by 1e-2 or more")
 
 check = checks_for(calls=("sample_sparse_adjoint",), tolerance=EXACT)
-GATE = Tolerance(1e-6, "differences leave 1e-9, wrong ones are off by 1e-2 or more")
+GATE = Tolerance(1e-6, "finite differences leave 1e-9, wrong ones are off by 1e-2 or more")
 
 
 def some_samples(t, count, samples, missing=0.3):
@@ -34,11 +34,11 @@ def back(t, count, row, weight, g):
 @check(
     "10.4.transpose",
     points=3,
-    hint="handout, equation (11): the same weights as forwards, from sample to voxel",
+    hint="handout, equation (11): the same weights as in the forward pass, from sample to voxel",
     sole="the definition of an adjoint",
 )
 def the_adjoint_is_the_transpose(t):
-    """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice add up."""
+    """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice are summed."""
     # The weights of a sample sum to 1: a voxel that is all eight corners gets the whole g.
     g = np.repeat(t.rng.uniform(0.5, 0.9, (5, 1)), 2, axis=1)
     weight = t.rng.uniform(0.1, 1.0, (8, 5))
@@ -49,7 +49,7 @@ def the_adjoint_is_the_transpose(t):
         f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
         f"the samples have {whole:.6g}",
         hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
-        "not add up; use `np.add.at`",
+        "not accumulate; use `np.add.at`",
     )
     for count, samples, channels in ((6, 9, 4), (40, 15, 1), (1, 3, 2)):
         row, weight = some_samples(t, count, samples)
@@ -67,7 +67,7 @@ def the_adjoint_is_the_transpose(t):
     sole="what a voxel that does not exist gets, and who must not get it instead",
 )
 def a_missing_voxel_gets_nothing(t):
-    """What belongs to missing voxels goes nowhere: other voxels get what they got before."""
+    """What belongs to absent voxels goes nowhere: other voxels get what they got before."""
     count, samples = 5, 8
     row, weight = some_samples(t, count, samples, 0.0)
     row[1, 0] = 0
@@ -89,7 +89,7 @@ def a_missing_voxel_gets_nothing(t):
     points=3,
     tolerance=GATE,
     hint="loss_and_grad is right once your function is the transpose of sample_sparse",
-    sole="the derivative of a picture, by differences",
+    sole="the derivative of a picture, by finite differences",
 )
 def the_picture_agrees_with_differences(t):
     """Moving one value of one voxel moves the loss as the derivative through your function says."""

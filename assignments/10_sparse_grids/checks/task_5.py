@@ -29,7 +29,7 @@ def grown(t, n, voxels, steps):
 
 
 def some_shares(t, most):
-    """(row, share), (8, M) each: voxel v has the largest share most[v]; 0 means never read."""
+    """(row, share), (8, M) each: voxel v has the largest share most[v]; 0 means never sampled."""
     read = np.flatnonzero(most > 0)
     more = t.rng.choice(read, 7 * len(read) + 40)
     missing = 40 - (8 * len(read) + 80) % 8
@@ -47,7 +47,7 @@ def some_shares(t, most):
     sole="who stays, asked without growing",
 )
 def the_largest_share_decides(t):
-    """Voxels stay whose largest share is above the threshold; those never read do not."""
+    """Voxels stay whose largest share is above the threshold; those never sampled do not."""
     n, count = 8, 60
     voxels = voxels_in(t, n, count)
     most = t.rng.uniform(0.1, 0.9, count)
@@ -69,7 +69,7 @@ def the_largest_share_decides(t):
     sole="closed forms: one voxel, a corner, two steps at once",
 )
 def one_voxel_grows_into_a_cube(t):
-    """One voxel becomes a cube of side 2 s + 1, cut off at the border; two steps are twice one."""
+    """One voxel becomes a cube of side 2 s + 1, clipped at the border; two steps are twice one."""
     n = 8
     for steps in (1, 2):
         middle = t.rng.integers(steps, n - steps, 3)
@@ -109,11 +109,11 @@ def photographed(t, n, voxels, values, rays):
     points=2,
     needs=EARLIER[:3],
     tolerance=SAME,
-    hint="a sample in an empty cell reads the full cell next to it: grown by one, not less",
+    hint="a sample in an empty cell reads the full cell next to it: dilated by one, not less",
     sole="skipping may save work, never change a picture",
 )
 def skipping_changes_nothing(t):
-    """The picture of a sparse grid is that of all n^3 voxels, most of its samples never read."""
+    """The picture of a sparse grid is that of all n^3 voxels, most of its samples skipped."""
     n = 8
     voxels, values = lump(t, n)
     rays = looking(t, 3, 6)

@@ -13,7 +13,7 @@ check = checks_for(calls=("fit_sparse",), needs=STEPS)
 
 
 def fitted(t, *given, function="fit_sparse"):
-    """`fit_sparse`, whose voxels nobody can count beforehand; the parts are looked at."""
+    """`fit_sparse`, whose voxels cannot be counted beforehand; the parts are looked at."""
     rounds, steps = given[5], given[6]
 
     class Fit:
@@ -56,8 +56,8 @@ def rates():
     "10.6.first",
     points=2,
     tolerance=CHAINED,
-    hint="handout, equation (14): one Adam for all four channels, then sigma cut off at 0",
-    sole="asks about the first steps alone",
+    hint="handout, equation (14): one Adam for all four channels, then sigma clamped to 0",
+    sole="tests the first steps only",
 )
 def the_first_steps(t):
     """Adam's first step has the length RATES against the gradient; no sigma goes below 0."""
@@ -69,7 +69,7 @@ def the_first_steps(t):
     got = fitted(t, n, voxels, values, rays, target, 1, 1, 0.5, 0)
     moved = values - rates() * d / (np.abs(d) + 1e-10)
     for part in (moved[:, :3], moved[:, 3]):
-        t.require(bool((part < 0).any() and (part > 0).any()), "the case is not telling")
+        t.require(bool((part < 0).any() and (part > 0).any()), "the test case is not informative")
     moved[:, 3] = np.maximum(moved[:, 3], 0)
     require_same_list(t, got[0], voxels)
     t.close("values", got[1], moved)

@@ -36,7 +36,7 @@ def adjoint(t, c, v, g):
     "11.3.coefficients",
     points=4,
     hint="handout, equation (11): colors are linear in the coefficients",
-    sole="asks about the coefficients alone",
+    sole="tests the coefficients only",
 )
 def the_adjoint_by_coefficients(t):
     """<colors of C, g> = <C, d_coefficients> for any C: the transpose."""
@@ -57,7 +57,7 @@ def the_adjoint_by_coefficients(t):
     sole="the derivative itself, without the reference",
 )
 def the_adjoint_by_vectors(t):
-    """Moving a vector by a little changes your colors by as much as your d_v says."""
+    """A small change of a vector changes your colors by as much as your d_v says."""
     for degree, channels in ((1, 1), (2, 3), (4, 2)):
         c, v, g = colors(t.rng, 3, degree, channels)
         _, d_v = adjoint(t, c, v, g)

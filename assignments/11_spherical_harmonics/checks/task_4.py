@@ -17,11 +17,11 @@ def rotated(t, c, R):
 @check(
     "11.4.turns",
     points=4,
-    hint="handout, equation (15): what stands at d after the turn stood elsewhere before",
+    hint="handout, equation (15): what stands at d after the rotation stood elsewhere before",
     sole="the definition of a rotation",
 )
 def a_turned_function_has_moved(t):
-    """The value that was at d is at R d, for turns about z and about any axis."""
+    """The value that was at d is at R d, for rotations about z and about any axis."""
     angle = t.rng.uniform(0.5, 2.5)
     about_z = np.array(
         [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]]
@@ -36,15 +36,15 @@ def a_turned_function_has_moved(t):
 @check(
     "11.4.compose",
     points=2,
-    hint="R' after R is the turn R' R; each degree keeps its length",
+    hint="R' after R is the rotation R' R; each degree keeps its length",
     sole="needs no harmonics to be asked",
 )
 def turns_compose(t):
-    """Two turns are one; no turn changes the length of any degree's coefficients."""
+    """Two rotations are one; no rotation changes the length of any degree's coefficients."""
     c = t.rng.uniform(-1.0, 1.0, (16, 3))
     first, second = random_rotation(t.rng), random_rotation(t.rng)
     once = rotated(t, c, first)
-    t.close("both turns", rotated(t, once, second), rotated(t, c, second @ first))
+    t.close("both rotations", rotated(t, once, second), rotated(t, c, second @ first))
     for ell in range(4):
         lengths = (np.linalg.norm(each[band(ell)], axis=0) for each in (once, c))
         t.close(f"length, degree {ell}", *lengths)

@@ -21,7 +21,7 @@ def lit(t, probes, p, n):
     sole="sees nothing but degree 0 and the sum of the weights",
 )
 def a_constant_sky(t):
-    """Radiance 1 from everywhere is the irradiance pi, at any place, on any surface."""
+    """Radiance 1 from everywhere is the irradiance pi, at any point, on any surface."""
     probes = np.zeros((3, 2, 4, 9, 1))
     probes[..., 0, :] = np.sqrt(4 * np.pi)
     p = t.rng.uniform(-0.5, 3.5, (20, 3))
@@ -55,10 +55,10 @@ def irradiance_is_the_integral(t):
     "11.5.blend",
     points=3,
     hint="handout, equation (19): eight probes, the weights of `corners`",
-    sole="looks at the blend, whatever the factors",
+    sole="looks at the interpolation, whatever the factors",
 )
 def an_even_change_is_blended_exactly(t):
-    """Light that changes evenly from probe to probe is blended without error; borders hold."""
+    """Linear functions of the probe are interpolated exactly; border values are repeated."""
     shape = (4, 3, 2)
     start, slopes = t.rng.uniform(-1.0, 1.0, (9, 2)), t.rng.uniform(-1.0, 1.0, (3, 9, 2))
     cells = np.stack(np.indices(shape), axis=-1)

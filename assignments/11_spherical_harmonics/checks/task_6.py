@@ -12,7 +12,7 @@ CHAINED = Tolerance(
 
 
 def photographs(rng, views, pixels, away=3.2, view_angle=0.75):
-    """Rays (2, views pixels^2, 3) of cameras spread evenly all around, that look at the middle."""
+    """Rays (2, views pixels^2, 3) of cameras distributed uniformly, that look at the center."""
     height = 1 - (np.arange(views) + 0.5) * 2 / views
     phi = np.arange(views) * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - height**2)
@@ -59,10 +59,10 @@ check = checks_for(calls=("fit_plenoxels",), needs=EARLIER)
     tolerance=EXACT,
     hint="handout, equation (21): where do the eight new cells lie in the old ones? An array "
     "twice too large: refinement stands between levels, not after the last",
-    sole="asks about the refinement alone",
+    sole="tests the refinement only",
 )
 def refinement_keeps_what_is_even(t):
-    """Without steps, two levels only refine: even slopes stay, the border holds."""
+    """Without steps, two levels only refine: linear functions stay, border values repeat."""
     shape = np.array([3, 2, 4])
     rays = photographs(t.rng, 1, 2)
     slopes, four = t.rng.uniform(0.1, 0.5, 3), t.rng.uniform(-1.0, 1.0, (4, 2))
@@ -82,7 +82,7 @@ def refinement_keeps_what_is_even(t):
     points=2,
     tolerance=CHAINED,
     hint="handout, equations (22) and (23), both in each step",
-    sole="asks about the first two steps alone",
+    sole="tests the first two steps only",
 )
 def the_first_steps(t):
     """Adam's first step has the length RATE against the gradient; none sees a density below 0."""
@@ -98,7 +98,7 @@ def the_first_steps(t):
     got = fitted(t, density, c, rays, target, 1, 1)
     loss, d_density, d_c = (np.asarray(each) for each in given)
     moved = density - 0.1 * d_density / (np.abs(d_density) + 1e-8)
-    t.require(bool((moved < 0).any() and (moved > 0).any()), "the case is not telling")
+    t.require(bool((moved < 0).any() and (moved > 0).any()), "the test case is not informative")
     t.close("coefficients", got[1], c - 0.1 * d_c / (np.abs(d_c) + 1e-8))
     t.close("density", got[0], np.maximum(moved, 0))
     t.close("losses", got[2], loss[None])

@@ -1,4 +1,4 @@
-"""What the checks of several tasks share."""
+"""Helpers for the checks of several tasks."""
 
 import numpy as np
 from photograd_course.grading import Array, Tolerance
@@ -10,7 +10,7 @@ EXACT = Tolerance(
     1e-10, "right ones differ by at most 5e-15, the nearest wrong one (blend_no_background) by 5e-5"
 )
 GATE = Tolerance(
-    1e-6, "differences leave 1e-9, the nearest wrong one (alpha_back_held_passes) 6e-4"
+    1e-6, "finite differences leave 1e-9, the nearest wrong one (alpha_back_held_passes) 6e-4"
 )
 SCENE = ("means", "log_scales", "quats", "opacity_logits", "colors")
 
@@ -49,7 +49,7 @@ EARLIER = ("covariance", "project", "screen_alpha", "composite")
 
 
 def some_scene(rng, camera, n, size=0.8):
-    """Gaussians that the middle of the picture sees, none of them held or dropped there."""
+    """Gaussians that the middle of the picture sees, none of them clamped or dropped there."""
     return {
         "means": in_world(camera, ahead(rng, n) * [0.5, 0.5, 1]),
         "log_scales": np.log(size) + rng.uniform(-0.3, 0.3, (n, 3)),

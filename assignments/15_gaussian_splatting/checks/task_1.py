@@ -19,7 +19,7 @@ def floored(size, tolerance=EXACT):
 
 
 def spread_back(t, q, s, g):
-    """What the `back` of `covariance` returns."""
+    """Result of the `back` of `covariance`."""
     parts = Items(Array(q.shape), Array(s.shape), names=("d_quats", "d_log_scales"))
     return t.call("adapters.covariance_back", q, s, g, returns=parts)
 
@@ -31,11 +31,11 @@ def spread_back(t, q, s, g):
     sole="small enough to work out by hand",
 )
 def known_turns(t):
-    """Unturned the scales lie on the axes; about z by an angle, xx, xy, yy are known."""
+    """Unrotated the scales lie on the axes; about z by an angle, xx, xy, yy are known."""
     s = t.rng.uniform(-1.0, 1.0, (1, 3))
     a, b, c = np.exp(2 * s[0])
     plain = spread(t, np.array([[1.0, 0.0, 0.0, 0.0]]), s)
-    t.close("cov, unturned", plain[0], np.diag([a, b, c]), reveal=True)
+    t.close("cov, unrotated", plain[0], np.diag([a, b, c]), reveal=True)
     for axis in range(3):
         angle = t.rng.uniform(0.2, 1.2)
         q = np.zeros((1, 4))

@@ -29,7 +29,7 @@ def symmetric(six):
 
 
 def folded(d_cov):
-    """The derivative by the six numbers of `symmetric`, whichever half stands where."""
+    """The derivative with respect to the six numbers of `symmetric`, for any halves."""
     both = d_cov + d_cov.swapaxes(1, 2)
     both = np.where(np.eye(3) > 0, d_cov, both)
     return both.reshape(-1, 9)[:, [0, 1, 2, 4, 5, 8]]
@@ -43,7 +43,7 @@ def seen(t, means, cov, camera):
 
 
 def seen_back(t, means, cov, camera, g):
-    """What the `back` of `project` returns."""
+    """Result of the `back` of `project`."""
     parts = Items(Array(means.shape), Array(cov.shape), names=("d_means", "d_cov"))
     return t.call("adapters.project_back", means, cov, camera, g[:, :2], g[:, 2:], returns=parts)
 
@@ -80,7 +80,7 @@ def where_means_are_seen(t):
     "15.2.sampled",
     points=3,
     tolerance=SAMPLED,
-    hint="handout, equations (11) and (12): J is the derivative of (10) by t",
+    hint="handout, equations (11) and (12): J is the derivative of (10) with respect to t",
     sole="needs no formula: only your own means",
 )
 def the_covariance_of_projected_points(t):
@@ -101,8 +101,8 @@ def the_covariance_of_projected_points(t):
 @check(
     "15.2.limits",
     points=2,
-    hint="handout, equation (13): only J sees the held direction, and mean2d does not",
-    sole="asks what is held and what is not, on each side",
+    hint="handout, equation (13): only J sees the clamped direction, and mean2d does not",
+    sole="asks what is clamped and what is not, on each side",
 )
 def what_is_held_outside(t):
     """Outside the limits cov2d is that of the limit, while mean2d goes on."""
@@ -121,11 +121,11 @@ def what_is_held_outside(t):
 
 
 # What the columns of `folded` are: an index tells nothing else of the matrix.
-NINE = "cov by xx, xy, xz, yy, yz, zz"
+NINE = "cov with respect to xx, xy, xz, yy, yz, zz"
 
 
 def projection_gate(t, points, camera, g):
-    """Both groups of `project` against differences, at points of the camera's frame."""
+    """Both groups of `project` against finite differences, at points of the camera's frame."""
     means, six = in_world(camera, points), shapes(t.rng, len(points)).reshape(-1, 9)
     six = six[:, [0, 1, 2, 4, 5, 8]]
     d_means, d_cov = seen_back(t, means, symmetric(six), camera, g)
@@ -144,7 +144,7 @@ def projection_gate(t, points, camera, g):
     adjoints=("project",),
     tolerance=GATE,
     hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
-    "entries of J and in both u; inside, J_xz moves by u as well",
+    "entries of J and in both u; inside, J_xz depends on u as well",
     sole="the derivative itself, without the reference",
 )
 def the_projection_agrees_with_differences(t):
@@ -164,7 +164,7 @@ def the_projection_agrees_with_differences(t):
     points=3,
     adjoints=("project",),
     tolerance=GATE,
-    hint="handout, section 2: what is held does not move; t_z still stands under f",
+    hint="handout, section 2: what is clamped does not move; t_z still stands under f",
     sole="the branch that public code has wrong",
 )
 def outside_the_limits_too(t):

@@ -20,7 +20,7 @@ def taken(t, m, s, o, pixels):
 
 
 def taken_back(t, m, s, o, pixels, g):
-    """What the `back` of `screen_alpha` returns."""
+    """Result of the `back` of `screen_alpha`."""
     parts = Items(
         Array(m.shape),
         Array(s.shape),
@@ -32,7 +32,7 @@ def taken_back(t, m, s, o, pixels, g):
 
 
 def wide_splats(rng, n, p):
-    """Splats that all pixels see, neither held nor dropped; (mean2d, cov2d, logits, pixels)."""
+    """Splats that all pixels see, neither clamped nor dropped; (mean2d, cov2d, logits, pixels)."""
     s = rng.uniform(8.0, 14.0, (n, 3))
     s[:, 1] = rng.uniform(-4.0, 4.0, n)
     return rng.uniform(0.0, 4.0, (n, 2)), s, rng.uniform(0.0, 2.0, n), rng.uniform(0.0, 4.0, (p, 2))
@@ -81,7 +81,7 @@ def on_an_ellipse_alpha_is_the_same(t):
     sole="names the cut-off, and whether its derivative is 0",
 )
 def cut_offs(t):
-    """What is below 1 / 255 is exactly 0, what is above 0.999 is held, and neither moves."""
+    """What is below 1 / 255 is exactly 0, what is above 0.999 is clamped, and neither moves."""
     m, s = t.rng.uniform(0.0, 9.0, (1, 2)), np.array([[4.0, 0.0, 4.0]])
     for logit, alpha, expected in (
         (0.0, 0.0037, 0.0),
@@ -107,15 +107,15 @@ def cut_offs(t):
     points=4,
     adjoints=("screen_alpha",),
     tolerance=GATE,
-    hint="handout, equations (19) and (20): derivatives by A, B, C or by the covariance, each "
-    "with its own count of B; the slope of oG by the logit is oG (1 - o)",
+    hint="handout, equations (19) and (20): derivatives of A, B, C or of the covariance, each "
+    "with its own count of B; the derivative of oG with respect to the logit is oG (1 - o)",
     sole="the derivative itself, without the reference",
 )
 def alpha_agrees_with_differences(t):
     """Moving a splat, its covariance or its logit moves alpha as your back says."""
     m, s, o, pixels = wide_splats(t.rng, 4, 6)
     m[1] += 90.0  # not seen at all
-    o[2], pixels[0] = 9.0, m[2] + 0.02  # held in one pixel
+    o[2], pixels[0] = 9.0, m[2] + 0.02  # clamped in one pixel
     g = random_cotangent(t.rng, (4, 6))
     d_m, d_s, d_o, _ = taken_back(t, m, s, o, pixels, g)
 
@@ -135,7 +135,7 @@ def alpha_agrees_with_differences(t):
     points=2,
     adjoints=("screen_alpha",),
     hint="handout, equation (21): absolute values first, then the sum over pixels",
-    sole="asks about pull alone",
+    sole="tests pull only",
 )
 def pull_does_not_cancel(t):
     """pull is the sum over pixels of the size of what each alone adds to d_mean2d."""

@@ -19,7 +19,7 @@ def blended(t, a, c, z, b):
 
 
 def blended_back(t, a, c, z, b, g):
-    """What the `back` of `composite` returns."""
+    """Result of the `back` of `composite`."""
     parts = Items(
         Array(a.shape), Array(c.shape), Array((3,)), names=("d_alpha", "d_colors", "d_background")
     )

@@ -20,7 +20,7 @@ def shown(t, scene, camera, pixels, b):
 
 
 def shown_back(t, scene, camera, pixels, b, g):
-    """What the `back` of `render` returns."""
+    """Result of the `back` of `render`."""
     shapes_of = {name: Array(array.shape) for name, array in scene.items()}
     record = Record(
         {**shapes_of, "background": Array((3,)), "pull": Array((len(scene["means"]), 2))}
@@ -52,7 +52,7 @@ def one_splat_straight_ahead(t):
     a = np.exp(-r / 2) / (1 + np.exp(-scene["opacity_logits"][:, None]))
     far, near = a[..., None] * scene["colors"][:, None]
     behind = far + (1 - a[0, :, None]) * b
-    t.require(bool((a > 0.01).all()), "the case is not telling")
+    t.require(bool((a > 0.01).all()), "the test case is not informative")
     got = shown(t, scene, camera, pixels, b)
     t.close("shown", got, near + (1 - a[1, :, None]) * behind, reveal=True)
 
@@ -61,7 +61,7 @@ def one_splat_straight_ahead(t):
     "15.5.differences",
     points=4,
     tolerance=GATE,
-    hint="handout, equation (27): the stages backwards, each with what the one after it returns",
+    hint="handout, equation (27): the stages backward, each with what the one after it returns",
     sole="the whole chain, group by group, without the reference",
 )
 def the_chain_agrees_with_differences(t):
@@ -89,7 +89,7 @@ def the_chain_agrees_with_differences(t):
     "15.5.behind",
     points=1,
     hint="leave out what is not farther than NEAR in front, and give its rows zeros",
-    sole="asks about culling alone",
+    sole="tests culling only",
 )
 def what_is_behind_the_camera_has_no_part(t):
     """Gaussians behind the camera or too near change nothing, and their derivatives are 0."""

@@ -9,7 +9,7 @@ check = checks_for(calls=("densify",), needs=("covariance",), tolerance=EXACT)
 
 
 def denser(t, scene, pressure, seed, most, count, adapter="densify"):
-    """What `densify` returns, as a dict and the sources."""
+    """Result of `densify`, as a dict and the sources."""
     parts = [Array((count, *scene[name].shape[1:])) for name in SCENE]
     got = t.call(
         f"adapters.{adapter}",
@@ -23,7 +23,7 @@ def denser(t, scene, pressure, seed, most, count, adapter="densify"):
 
 
 def eight(rng):
-    """Faint or not, small or large, pressed or not: (scene, pressure)."""
+    """Faint or not, small or large, above the threshold or not: (scene, pressure)."""
     scene = {
         "means": rng.normal(size=(8, 3)),
         "quats": rng.normal(size=(8, 4)),
@@ -45,7 +45,7 @@ def eight(rng):
     sole="asks which rows there are, and nothing of their values",
 )
 def who_stays_and_who_is_new(t):
-    """Faint ones go, small pressed ones are cloned, large pressed ones split, in a fixed order."""
+    """Pruned ones go, small chosen ones are cloned, large chosen ones split, in a fixed order."""
     scene, pressure = eight(t.rng)
     got, source = denser(t, scene, pressure, 1, 100, 10)
     rows = [1, 3, 5, 6, 1, 5, 2, 7, 2, 7]
@@ -59,12 +59,12 @@ def who_stays_and_who_is_new(t):
 @check(
     "15.6.values",
     points=2,
-    hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); places: L z with L "
+    hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); points: L z with L "
     "of the whole",
-    sole="asks about the values of new rows",
+    sole="tests the values of new rows",
 )
 def clones_keep_the_middle_and_parts_are_drawn(t):
-    """Two clones cover as one did; parts are smaller by 1.6, at places drawn from the whole."""
+    """Two clones cover as one did; parts are smaller by 1.6, at points drawn from the whole."""
     scene, pressure = eight(t.rng)
     seed = int(t.rng.integers(1 << 20))
     got, _ = denser(t, scene, pressure, seed, 100, 10)
@@ -91,18 +91,18 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
         np.linalg.solve(np.linalg.cholesky(each), d) for each, d in zip(whole, off, strict=True)
     ]
     expected = np.random.default_rng(seed).standard_normal((4, 3))
-    t.close("places of parts, in standard deviations", np.stack(draws), expected, reveal=True)
+    t.close("points of parts, in standard deviations", np.stack(draws), expected, reveal=True)
 
 
 @check(
     "15.6.most",
     points=1,
-    hint="each chosen one makes one more; the highest pressure goes first. Faint ones leave "
+    hint="each chosen one makes one more; the highest statistics go first. Faint ones leave "
     "first: room is `most` minus the number that stay",
-    sole="asks about the budget alone",
+    sole="tests the budget only",
 )
 def never_more_than_most(t):
-    """With room for two more, the two under the highest pressure are chosen; with none, nobody."""
+    """With room for two more, the two of the highest statistics are chosen; without, none."""
     scene, pressure = eight(t.rng)
     got, source = denser(t, scene, pressure, 1, 8, 8)
     t.close("colors", got["colors"], scene["colors"][[1, 3, 5, 6, 7, 5, 2, 2]], reveal=True)

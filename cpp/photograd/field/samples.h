@@ -20,7 +20,7 @@ struct SampleBatch {
     std::vector<Lanes<R>> position[3];
     std::vector<R> direction[3];  // of the ray: unit, away from the camera
     std::vector<int> used;
-    std::vector<std::uint32_t> ray;  // which of the chunk's, 0 to march_chunk - 1
+    std::vector<std::uint32_t> ray;  // which of the chunk's, from 0 on
 
     [[nodiscard]] std::size_t groups() const { return t.size(); }
     void resize(std::size_t groups) {

@@ -80,5 +80,17 @@ inline void activate_backward(Activation kind, R x, R d_y, R& d_x) {
     }
 }
 
+/// dy/dx from y alone, where x was not kept.
+template <class R>
+inline R derivative_at_value(Activation kind, R y) {
+    switch (kind) {
+        case Activation::relu: return y > R(0) ? R(1) : R(0);
+        case Activation::softplus: return -expm1(-y);  // y = ln(1 + e^x): 1 - e^-y = sigmoid(x)
+        case Activation::exp: return y;
+        case Activation::sigmoid: return y * (R(1) - y);
+        default: return R(1);
+    }
+}
+
 }  // namespace PHOTOGRAD_ISA
 }  // namespace photograd

@@ -41,6 +41,14 @@ def find_photograph(
     Without a suffix (the Blender convention), those of `IMAGE_SUFFIXES` are tried in this order, or
     the linear ones first when linear radiance is asked for.
 
+    Args:
+        function: on whose behalf errors speak.
+        frame: what errors call the view.
+        folder: of the capture.
+        reference: the name in the capture's file.
+        color_space: "linear" tries .exr and .hdr first.
+        allow_outside: whether it may lie elsewhere.
+
     Raises:
         IoError: there is none, or it is no image, or `reference` leads out of `folder` without
             `allow_outside`; the text names the frame.
@@ -75,6 +83,12 @@ def check_size(
 ) -> None:
     """Refuse an image that is not of the (width, height) that its camera was calibrated for.
 
+    Args:
+        function: on whose behalf the error speaks.
+        frame: what it calls the view.
+        photograph: with the size of its file.
+        expected: (width, height) of the camera.
+
     Raises:
         IoError: sizes differ.
     """
@@ -88,6 +102,10 @@ def check_size(
 
 def check_same_size(function: str, photographs: Sequence[tuple[str, Photograph]]) -> None:
     """Refuse images of different sizes in a format that has one size for all.
+
+    Args:
+        function: on whose behalf the error speaks.
+        photographs: each with the name of its frame.
 
     Raises:
         IoError: names the first image that differs.
@@ -105,6 +123,13 @@ def make_camera(
     pose: FloatArray,
 ) -> Camera:
     """Camera of (width, height) and (fx, fy, cx, cy) whose errors name the frame.
+
+    Args:
+        function: on whose behalf errors speak.
+        frame: what they call the view.
+        size: (width, height).
+        pixels: (fx, fy, cx, cy).
+        pose: (4, 4) world_from_camera.
 
     Raises:
         RangeError, SceneError, ShapeError: as `Camera` does.
@@ -177,6 +202,10 @@ class ImageKind:
 def kind_of_images(function: str, photographs: Sequence[Photograph]) -> ImageKind:
     """Color space and alpha of all images, and those that lie beside them unused.
 
+    Args:
+        function: on whose behalf errors speak.
+        photographs: of the capture.
+
     Raises:
         IoError: no images at all.
         SceneError: EXR and 8-bit images mixed.
@@ -235,6 +264,10 @@ def box_from_source(world_from_source: FloatArray, box: FloatArray) -> FloatArra
     """The axis-aligned (2, 3) box around a turned box.
 
     Exact for the quarter turn from +Z up to +Y up.
+
+    Args:
+        world_from_source: (4, 4) rigid.
+        box: (2, 3) in the world of the file.
     """
     corners = transform_points(world_from_source, box_corners(box))
     return np.stack([corners.min(axis=0), corners.max(axis=0)])
@@ -246,5 +279,10 @@ def box_corners(box: FloatArray) -> FloatArray:
 
 
 def transform_points(world_from_source: FloatArray, points: FloatArray) -> FloatArray:
-    """Points (N, 3) of the file's world in ours."""
+    """Points (N, 3) of the file's world in ours.
+
+    Args:
+        world_from_source: (4, 4) rigid.
+        points: (N, 3).
+    """
     return matmul(points, world_from_source[:3, :3].T) + world_from_source[:3, 3]

@@ -34,6 +34,11 @@ def visual_hull_box(
     A voxel is empty if its footprint meets no pixel with alpha in some view that shows it, or if
     fewer than half of the views show it. A voxel is kept in doubt, so that the hull contains the
     object; its box is at most a voxel and a pixel too large on each side.
+
+    Args:
+        silhouettes: alpha of the views, with their cameras.
+        box: (2, 3) to look in.
+        resolutions: voxels along the longest edge, coarse to fine; each box is looked through next.
     """
     for resolution in resolutions:
         alive = _carve(silhouettes, box, resolution)
@@ -46,7 +51,11 @@ def visual_hull_box(
 
 
 def silhouettes_of(views: Sequence[View]) -> list[Silhouette]:
-    """Read the alpha of each view; pixels that are not valid may show anything."""
+    """Read the alpha of each view; pixels that are not valid may show anything.
+
+    Args:
+        views: with alpha.
+    """
     result: list[Silhouette] = []
     for view in views:
         occupied = (view.rgba()[..., 3] > 0.0) | ~view.valid_mask()
@@ -126,6 +135,10 @@ def blind_cameras(views: Sequence[View], box: FloatArray) -> tuple[str, ...]:
 def require_views_of(views: Sequence[View], box: FloatArray) -> None:
     """Refuse a box that some camera does not see.
 
+    Args:
+        views: whose cameras are asked.
+        box: (2, 3) of the scene.
+
     Raises:
         SceneError: names the cameras.
     """
@@ -135,7 +148,13 @@ def require_views_of(views: Sequence[View], box: FloatArray) -> None:
 
 
 def no_view(blind: Sequence[str], count: int, box: FloatArray) -> str:
-    """The sentence that names cameras which do not see the box."""
+    """The sentence that names cameras which do not see the box.
+
+    Args:
+        blind: names of the cameras that see nothing.
+        count: how many cameras there are.
+        box: (2, 3) of the scene.
+    """
     names = ", ".join(blind[:8]) + (", ..." if len(blind) > 8 else "")
     corners = " to ".join(str(tuple(round(float(x), 4) for x in corner)) for corner in box)
     got = f"{len(blind)} of {count} that do not: {names}"

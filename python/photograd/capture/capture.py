@@ -137,7 +137,11 @@ class Capture:
         return self.train if kind == "train" else self.test
 
     def with_line(self, line: str) -> Capture:
-        """The same capture with one more sentence in its log."""
+        """The same capture with one more sentence in its log.
+
+        Args:
+            line: a sentence.
+        """
         return replace(self, conversions=(*self.conversions, line))
 
     def with_validation_split(self) -> Capture:

@@ -147,6 +147,11 @@ def pinhole_and_lens(
     the same focal lengths and principal point: the middle of the photograph keeps its scale, and
     what a fisheye lens shows beyond the pinhole's borders is cut off.
 
+    Args:
+        camera: as COLMAP describes it.
+        camera_id: its number, for errors.
+        pose: (4, 4) of the view.
+
     Raises:
         IoError: a camera of no focal length, or a model that pycolmap has to compute, which is not
             installed (extra `sfm`).

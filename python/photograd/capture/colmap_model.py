@@ -101,6 +101,9 @@ class ColmapModel:
 def read_text_model(folder: Path) -> ColmapModel:
     """Read cameras.txt, images.txt and, if it is there, points3D.txt.
 
+    Args:
+        folder: that holds them.
+
     Raises:
         IoError, RangeError: names file and line.
     """
@@ -268,6 +271,9 @@ class _Reader:
 
 def read_binary_model(folder: Path) -> ColmapModel:
     """Read cameras.bin, images.bin and, if it is there, points3D.bin.
+
+    Args:
+        folder: that holds them.
 
     Raises:
         IoError: names file and byte: too short, too long, unknown model, or not UTF-8.

@@ -63,7 +63,11 @@ def check_pose(function: str, argument: str, matrix: FloatArray) -> FloatArray:
 
 
 def invert_rigid(matrix: FloatArray) -> FloatArray:
-    """Inverse of a (4, 4) rigid transform through the transpose, exact to rounding."""
+    """Inverse of a (4, 4) rigid transform through the transpose, exact to rounding.
+
+    Args:
+        matrix: (4, 4), a rotation and a translation.
+    """
     inverse = np.eye(4)
     inverse[:3, :3] = matrix[:3, :3].T
     inverse[:3, 3] = -matmul(matrix[:3, :3].T, matrix[:3, 3])

@@ -37,6 +37,11 @@ def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, in
     in radians: fx = (w / 2) / tan(angle / 2). Missing: fy = fx, principal point in the middle, size
     that of the image.
 
+    Args:
+        shared: members that hold for all frames.
+        frame: members of this one.
+        image_size: (width, height) of its image.
+
     Raises:
         IoError: members missing or of the wrong type, or a camera model that is not supported.
         RangeError: not finite, not positive, or an angle outside (0, pi).

@@ -175,6 +175,9 @@ _POSITION, _COLOR = ("x", "y", "z"), ("red", "green", "blue")
 def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None]:
     """Positions (N, 3) in the frame of the file and 8-bit display colors (N, 3), or None.
 
+    Args:
+        path: of the file.
+
     Raises:
         IoError: no file, a damaged one, or positions or colors that are none.
     """

@@ -82,6 +82,9 @@ class Distortion:
         With R = 1 + k1 r^2 + k2 r^4 and R' = dR/d(r^2) = k1 + 2 k2 r^2:
             dx'/dx = R + 2 x^2 R' + 2 p1 y + 6 p2 x      dx'/dy = 2 x y R' + 2 p1 x + 2 p2 y
             dy'/dy = R + 2 y^2 R' + 6 p1 y + 2 p2 x      dy'/dx = dx'/dy
+
+        Args:
+            points: (N, 2) ideal points, at depth 1.
         """
         x, y = points[:, 0], points[:, 1]
         k1, k2, p1, p2 = astuple(self)

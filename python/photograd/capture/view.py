@@ -20,7 +20,12 @@ from photograd.types import FloatArray
 
 
 def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArray[Any]:
-    """Colors of a view in display values: encoded if they are linear. Same shape and dtype."""
+    """Colors of a view in display values: encoded if they are linear. Same shape and dtype.
+
+    Args:
+        color: (..., 3).
+        color_space: of the view.
+    """
     return srgb_encode(color) if color_space == "linear" else color
 
 
@@ -104,14 +109,22 @@ class View:
         return downscale_image(mask, self.downscale, valid)[1]
 
     def downscaled(self, factor: int) -> View:
-        """The same view reduced by an integer box average."""
+        """The same view reduced by an integer box average.
+
+        Args:
+            factor: pixels of the view along an edge of a new one.
+        """
         camera = self.camera.downscaled(factor)
         return replace(
             self, camera=camera, downscale=self.downscale * factor, source_size=self._source_size()
         )
 
     def transformed(self, world_from_source: FloatArray) -> View:
-        """The same view after the world was moved by a (4, 4) rigid transform."""
+        """The same view after the world was moved by a (4, 4) rigid transform.
+
+        Args:
+            world_from_source: (4, 4).
+        """
         pose = matmul(world_from_source, self.camera.world_from_camera)
         return replace(self, camera=replace(self.camera, world_from_camera=pose))
 

@@ -195,6 +195,11 @@ def write_blender_capture(
 def require_free_folder(function: str, path: Path, *, overwrite: bool) -> None:
     """Refuse, before the work, a folder that a capture cannot be written to.
 
+    Args:
+        function: on whose behalf the error speaks.
+        path: of the folder.
+        overwrite: whether an earlier capture of ours may be replaced.
+
     Raises:
         IoError: it has content; with `overwrite` transforms of another hand.
     """

@@ -57,7 +57,12 @@ class ActiveVoxels:
 
     @classmethod
     def of_state(cls, state: Mapping[str, Array], where: str) -> ActiveVoxels:
-        """From what `state` returned. Raises RangeError for other entries."""
+        """From what `state` returned. Raises RangeError for other entries.
+
+        Args:
+            state: {name: array}.
+            where: on whose behalf the error speaks.
+        """
         if set(state) != {"shape", "mask"}:
             expected = "entries 'mask' and 'shape'"
             raise RangeError(message(where, "state", expected, f"{sorted(state)}"))
@@ -93,6 +98,11 @@ class ActiveVoxels:
         """Rows (N, ...) of these voxels at those of another grid over the same box, trilinear.
 
         `fill` stands for voxels that are not active.
+
+        Args:
+            rows: (N, ...).
+            to: the other grid.
+            fill: for voxels that are not active.
         """
         scale = np.array(self.shape) / np.array(to.shape)
         at = np.ascontiguousarray((to.voxels + 0.5) * scale - 0.5, rows.dtype)
@@ -109,7 +119,12 @@ class ActiveVoxels:
 
 
 def dilated(mask: Array, steps: int = 1) -> Array:
-    """All voxels within `steps` of an active one along each axis (a cube around it)."""
+    """All voxels within `steps` of an active one along each axis (a cube around it).
+
+    Args:
+        mask: (X, Y, Z).
+        steps: voxels on each side.
+    """
     for _ in range(steps):
         for axis in range(3):
             grown = mask.copy()
@@ -121,7 +136,12 @@ def dilated(mask: Array, steps: int = 1) -> Array:
 
 
 def resampled_mask(mask: Array, shape: tuple[int, int, int]) -> Array:
-    """The mask on a finer grid over the same box: voxels ask the one that their center is in."""
+    """The mask on a finer grid over the same box: voxels ask the one that their center is in.
+
+    Args:
+        mask: (X, Y, Z).
+        shape: of the finer grid.
+    """
     index = [
         np.minimum(((np.arange(n) + 0.5) * m / n).astype(np.int64), m - 1)
         for n, m in zip(shape, mask.shape, strict=True)

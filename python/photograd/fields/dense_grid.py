@@ -49,6 +49,11 @@ def cubic_voxels(extent: Array, resolution: int) -> list[int]:
 def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, int]:
     """Voxels along each edge of a box that stays as it is; they are nearly cubes.
 
+    Args:
+        function: on whose behalf the error speaks.
+        box: (2, 3) in meters.
+        resolution: voxels along the longest edge.
+
     Raises:
         DtypeError, RangeError: fewer than 2 voxels along the longest edge.
     """
@@ -85,6 +90,11 @@ class DenseGrid(GridField):
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
         """Raises DtypeError, ShapeError or RangeError unless values is (X, Y, Z, 4), finite, and
         X, Y and Z are at least 2.
+
+        Args:
+            values: raw color and density of each voxel.
+            policy: the box, the step and the activations.
+            fused: False takes the readable form of the kernel.
         """
         call = Arguments("DenseGrid")
         self.params = {"values": call.array("values", values, ("X", "Y", "Z", 4), min_length=2)}
@@ -108,6 +118,14 @@ class DenseGrid(GridField):
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
         density scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is
         the start. Raises RangeError for a bad box, fewer than 2 voxels, or more than memory holds.
+
+        Args:
+            box: (2, 3) in meters.
+            resolution: voxels along the longest edge.
+            finest: resolution at the end of a fit; None takes `resolution`.
+            sigma_t: extinction in 1/m.
+            steps_per_voxel: of the march.
+            dtype: np.float32 or np.float64.
         """
         call = Arguments("DenseGrid.empty", np.float64)
         resolution, box = call.integer("resolution", resolution, low=2), call.box("box", box)

@@ -65,7 +65,12 @@ class Blend:
 
     @classmethod
     def of(cls, params: Mapping[str, Array], points: Array) -> Blend:
-        """The formulas above."""
+        """The formulas above.
+
+        Args:
+            params: by group.
+            points: (P, 2).
+        """
         d = points[:, None] - params["mean"]
         cos, sin = pm.cos(params["angle"]), pm.sin(params["angle"])
         inverse = pm.exp(-params["log_scale"])
@@ -78,7 +83,11 @@ class Blend:
 
 
 def opacity_of(params: Mapping[str, Array]) -> Array:
-    """sigmoid(opacity_logit), (N,)."""
+    """sigmoid(opacity_logit), (N,).
+
+    Args:
+        params: by group.
+    """
     e = pm.exp(-np.abs(params["opacity_logit"]))  # cannot overflow
     return np.asarray(np.where(params["opacity_logit"] < 0, e, 1) / (1 + e))
 
@@ -98,6 +107,13 @@ class Gaussians2D(Representation):
     ) -> None:
         """Raises ShapeError unless the arrays have the shapes above with N >= 1, DtypeError unless
         all are float32 or all float64.
+
+        Args:
+            mean: (N, 2) on the canvas.
+            log_scale: (N, 2) logarithms of the standard deviations.
+            angle: (N,) in radians.
+            opacity_logit: (N,).
+            color: (N, 3).
         """
         call = Arguments("Gaussians2D")
         self.params = {
@@ -115,6 +131,11 @@ class Gaussians2D(Representation):
         """Round, gray and half transparent, anywhere on the canvas: a start for a fit.
 
         Together they are as large as the canvas: each has a radius of 1 / sqrt(pi count).
+
+        Args:
+            count: N.
+            seed: of the places.
+            dtype: np.float32 or np.float64.
         """
         index = np.arange(count)
         mean = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(2)], -1)

@@ -76,7 +76,11 @@ class MarchPolicy:
         require_choices(self)
 
     def settings(self, stop: float) -> Any:
-        """The core's form of this policy."""
+        """The core's form of this policy.
+
+        Args:
+            stop: transmittance below which a ray ends.
+        """
         return _core.MarchSettings(
             box=[list(corner) for corner in self.box],
             dt=self.dt,
@@ -127,6 +131,17 @@ def march(
     (R,) ends each ray at that distance, infinity included: samples beyond are left out. Raises
     Error if a parameter or an output is not finite, RangeError for rays that are not finite or
     whose directions are not of length one, named by their pixel, or as `check_camera_adjoint`.
+
+    Args:
+        field: name in the core.
+        parameters: of the field.
+        policy: box, step and activations.
+        batch: the rays.
+        options: of this rendering.
+        seed: of the jitter.
+        step: of the fit, for other jitter at each.
+        fused: see above.
+        t_max: see above.
     """
     check_camera_adjoint("march", policy, options)
     checked_values("march", "parameters", parameters)
@@ -162,6 +177,10 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
     """{"parameters": ..., and with camera_adjoint "origins", "directions"} for a march.
 
     The camera adjoint is the interior term: where a ray enters and leaves the box is held fixed.
+
+    Args:
+        context: of the march.
+        d_outputs: of the shapes of the outputs.
     """
     c = context
     rays = len(c.t0)
@@ -192,6 +211,11 @@ def check_camera_adjoint(function: str, policy: MarchPolicy, options: RenderOpti
 
     That point moves with the camera; the adjoint holds all t fixed and would leave its part out.
 
+    Args:
+        function: on whose behalf the error speaks.
+        policy: with the lattice.
+        options: of the rendering.
+
     Raises:
         RangeError: `camera_adjoint` with the lattice "entry".
     """
@@ -214,6 +238,14 @@ def checked_rays(
     """Origins, directions (R, 3), t0 and samples (R,) of a batch, with its jitter.
 
     Raises RangeError for rays that are not finite or whose directions are not of length one.
+
+    Args:
+        batch: the rays.
+        settings: of the core.
+        options: of the rendering.
+        dtype: of the field.
+        seed: of the jitter.
+        step: of the fit.
     """
     _check_rays(batch)
     origins = np.ascontiguousarray(batch.origins, dtype)
@@ -226,7 +258,13 @@ def checked_rays(
 
 
 def checked_values(function: str, argument: str, values: Array) -> None:
-    """Kernels may assume finite numbers, and would hide others; one pass over them, done here."""
+    """Kernels may assume finite numbers, and would hide others; one pass over them, done here.
+
+    Args:
+        function: on whose behalf the error speaks.
+        argument: what it calls the values.
+        values: of any shape.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         if np.isfinite(values.sum()):
             return
@@ -248,6 +286,12 @@ def _check_rays(batch: RayBatch) -> None:
 
 
 def require_finite_image(color: Array, transmittance: Array, batch: RayBatch) -> None:
-    """Raise Error, naming the first pixel, if a ray is not finite."""
+    """Raise Error, naming the first pixel, if a ray is not finite.
+
+    Args:
+        color: (R, 3).
+        transmittance: (R,).
+        batch: the rays.
+    """
     outputs = {"color": color, "transmittance": transmittance}
     require_finite("march", outputs, lambda at: f"pixel {int(batch.pixel[at[0]])}")

@@ -58,6 +58,16 @@ def march_sparse(
 
     `parameters` are density (N,), harmonics (N, K, 3) and what is outside of the active voxels
     (1 + 3 K,). Raises as `photograd.fields.march.march`.
+
+    Args:
+        active: which voxels there are.
+        parameters: see above.
+        policy: box, step and activations.
+        batch: the rays.
+        options: of this rendering.
+        seed: of the jitter.
+        step: of the fit, for other jitter at each.
+        fused: False takes the readable form of the kernel.
     """
     check_camera_adjoint("SparseSh.render", policy, options)
     density, coefficients, _ = parameters
@@ -77,7 +87,12 @@ def march_sparse(
 
 
 def march_sparse_backward(c: SparseContext, d_outputs: Outputs) -> tuple[dict[str, Array], Array]:
-    """{"density", "sh", with camera_adjoint "origins", "directions"}; d_background (1 + 3 K,)."""
+    """{"density", "sh", with camera_adjoint "origins", "directions"}; d_background (1 + 3 K,).
+
+    Args:
+        c: context of `march_sparse`.
+        d_outputs: of the shapes of the outputs.
+    """
     density, coefficients, background = c.parameters
     dtype = density.dtype
     none = np.zeros(len(c.t0), dtype)
@@ -110,7 +125,14 @@ def greatest_weights(
     policy: MarchPolicy,
     batches: Iterable[RayBatch],
 ) -> Array:
-    """(N,) float32, the greatest weight that each voxel has in any sample of these rays."""
+    """(N,) float32, the greatest weight that each voxel has in any sample of these rays.
+
+    Args:
+        active: which voxels there are.
+        parameters: as of `march_sparse`.
+        policy: box, step and activations.
+        batches: rays.
+    """
     density, coefficients, background = (np.ascontiguousarray(p, np.float32) for p in parameters)
     settings, kind = policy.settings(0.0), np.dtype(np.float32)
     max_weight = np.zeros(len(active), np.float32)

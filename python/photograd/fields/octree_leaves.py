@@ -51,7 +51,14 @@ class Leaves:
 
 
 def leaves_of_grid(field: DenseGrid, *, degree: int, opacity: float, tolerance: float) -> Leaves:
-    """See `OctreeSh.from_dense_grid`: voxels that are nearly equal share a larger leaf."""
+    """See `OctreeSh.from_dense_grid`: voxels that are nearly equal share a larger leaf.
+
+    Args:
+        field: a dense grid.
+        degree: of the harmonics.
+        opacity: below which a voxel has no leaf.
+        tolerance: difference up to which voxels are nearly equal.
+    """
     cell = (field.box[1, 0] - field.box[0, 0]) / field.density.shape[0]
     scale = field.policy.density_scale
     sigma_t = scale * softplus(field.density.astype(np.float64))
@@ -72,7 +79,13 @@ def leaves_of_grid(field: DenseGrid, *, degree: int, opacity: float, tolerance: 
 
 
 def leaves_of_voxels(field: SparseSh, *, degree: int | None, opacity: float) -> Leaves:
-    """See `OctreeSh.from_sparse_sh`: harmonics differ from voxel to voxel, so none share a leaf."""
+    """See `OctreeSh.from_sparse_sh`: harmonics differ from voxel to voxel, so none share a leaf.
+
+    Args:
+        field: a sparse grid.
+        degree: of the harmonics; None keeps them.
+        opacity: below which a voxel has no leaf.
+    """
     policy = field.policy
     if (policy.density_activation, policy.color_activation) != ("softplus", "sigmoid"):
         expected = "a field with density_activation 'softplus' and color_activation 'sigmoid'"
@@ -141,7 +154,12 @@ class Segments:
 
 
 def segments_of(borders: Borders, row: NDArray[np.int32]) -> Segments:
-    """Trace the rays; leaves with row -1 are passed over."""
+    """Trace the rays; leaves with row -1 are passed over.
+
+    Args:
+        borders: of the leaves, and the rays.
+        row: of each leaf.
+    """
     visits = borders.tree.traverse(borders.origins, borders.directions)
     rays = len(borders.origins)
     ray = np.repeat(np.arange(rays), np.diff(visits.ray_offset))
@@ -160,6 +178,12 @@ def border_gradients(
     A ray enters a box through the plane that it meets last of the three it comes towards, and
     leaves it through the first of the three others. A ray that begins inside of its first box
     enters it at t = 0, whatever the camera does.
+
+    Args:
+        borders: of the leaves, and the rays.
+        segments: of the rays.
+        d_t0: (M,).
+        d_t1: (M,).
     """
     lower, side = borders.tree.leaf_boxes()
     cell = borders.tree.cell_size
@@ -203,6 +227,12 @@ def composite(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
     """Front to back, the k-th segments of all rays at a time.
 
     A ray of which less than `stop` is left meets nothing any more.
+
+    Args:
+        segments: of the rays.
+        s: (M,) optical depths.
+        rays: R.
+        stop: see above.
     """
     tau, transmittance = np.zeros(rays, s.dtype), np.ones(rays, s.dtype)
     weight, behind, visible = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
@@ -219,7 +249,15 @@ def composite(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
 def optical_depth_backward(
     segments: Segments, walk: Walk, v: Array, outputs: Outputs, d_outputs: Outputs
 ) -> Array:
-    """d_s (M,), front to back again; `v` is <d_color, rgb> + d_depth (t0 + t1) / 2."""
+    """d_s (M,), front to back again; `v` is <d_color, rgb> + d_depth (t0 + t1) / 2.
+
+    Args:
+        segments: of the rays.
+        walk: what `composite` returned.
+        v: (M,).
+        outputs: of the rendering.
+        d_outputs: dL/d of these.
+    """
     kind = v.dtype
     left = (np.asarray(d_outputs.color, kind) * outputs.color).sum(axis=1)
     if d_outputs.depth is not None:
@@ -236,5 +274,11 @@ def optical_depth_backward(
 
 
 def sums(owner: NDArray[np.integer[Any]], values: Array, count: int) -> Array:
-    """Sums of `values` by owner, in their order."""
+    """Sums of `values` by owner, in their order.
+
+    Args:
+        owner: (M,) numbers below `count`.
+        values: (M, ...).
+        count: of owners.
+    """
     return np.bincount(owner, values, minlength=count)

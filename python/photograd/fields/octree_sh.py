@@ -103,7 +103,15 @@ class OctreeSh(VoxelField):
         *,
         density_scale: float = 1.0,
     ) -> None:
-        """Raises ShapeError unless the arrays fit the tree, RangeError for rows that do not."""
+        """Raises ShapeError unless the arrays fit the tree, RangeError for rows that do not.
+
+        Args:
+            tree: where the leaves are.
+            row: of each leaf; -1 for empty ones.
+            density: (N,) raw.
+            coefficients: (N, K, 3) of the harmonics.
+            density_scale: extinction in 1/m of an activated density of 1.
+        """
         row = Arguments("OctreeSh").array("row", row, (len(tree.values),), dtype=np.int32, low=-1)
         rows = int((row >= 0).sum())
         if not np.array_equal(np.sort(row[row >= 0]), np.arange(rows)):

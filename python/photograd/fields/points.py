@@ -69,6 +69,13 @@ class Points(Representation):
     ) -> None:
         """`opacity` in the middle of every point; what is fainter than `alpha_min` is not drawn.
 
+        Args:
+            position: (N, 3) in meters.
+            color: (N, 3).
+            log_radius: (N,), or (1,) for all.
+            opacity: in (0, 1).
+            alpha_min: in [0, 0.5].
+
         Raises:
             ShapeError: the arrays are not (N, 3), (N, 3) and (N,) or (1,), N >= 1.
             DtypeError: they are not all float32 or all float64.

@@ -79,7 +79,14 @@ class SparseSh(GridField):
         background_density: float = 0.0,
         fused: bool = True,
     ) -> None:
-        """Raises ShapeError, DtypeError, RangeError (degree) or Error (not finite)."""
+        """Raises ShapeError, DtypeError, RangeError (degree) or Error (not finite).
+
+        Args:
+            active, policy: which voxels there are, and box, step and activations.
+            density, coefficients: (N,) raw, and (N, K, 3) of the harmonics.
+            background_density: raw, of voxels that are not active.
+            fused: False takes the readable form of the kernel.
+        """
         checked_values("SparseSh", "density", density)
         checked_values("SparseSh", "sh", coefficients)
         call = Arguments("SparseSh")
@@ -112,7 +119,8 @@ class SparseSh(GridField):
     ) -> Self:
         """A grid of cubic voxels over `box` (2, 3) in which every voxel is active, nearly empty.
 
-        Arguments as for `DenseGrid.empty`; `degree` 0 to 3. Raises RangeError.
+        `resolution`, `finest`, `sigma_t`, `steps_per_voxel` and `dtype` as for `DenseGrid.empty`;
+        `degree` 0 to 3. Raises RangeError.
         """
         Arguments("SparseSh.full").integer("degree", degree, low=0, high=MAX_DEGREE)
         corners = np.asarray(box, np.float64)
@@ -271,7 +279,7 @@ class SparseSh(GridField):
     def add_variation(
         self, values: Array, d_value: float, d_values: Array, bricks: tuple[int, int]
     ) -> None:
-        """Add the adjoint of the variation to the rows of bricks first .. last - 1."""
+        """Add the adjoint for `d_value` of the variation of `values` in `bricks` to `d_values`."""
         flat = np.ascontiguousarray(values).reshape(len(values), -1)
         d_flat = d_values.reshape(flat.shape)
         _core.total_variation_backward(self.active.topology, flat, d_value, *bricks, d_flat)
@@ -289,7 +297,7 @@ class SparseSh(GridField):
             self.add_variation(values, share, gradients[group], (start, start + some))
 
     def greatest_weights(self, batches: Iterable[RayBatch]) -> Array:
-        """(N,) the greatest weight that each voxel has in any sample of these rays, 0 to 1.
+        """(N,) the greatest weight that each voxel has in any sample of these `batches`, 0 to 1.
 
         A sample's weight in its pixel times the voxel's trilinear weight in the sample. Give it all
         views: a voxel that this batch does not see may matter to the next.

@@ -49,7 +49,12 @@ from photograd.types import Array
 
 
 def voxel_centers(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """(X, Y, Z, 3) middles of the equal voxels that fill a box (2, 3)."""
+    """(X, Y, Z, 3) middles of the equal voxels that fill a box (2, 3).
+
+    Args:
+        box: (2, 3) in meters.
+        shape: (X, Y, Z).
+    """
     corners = np.asarray(box, np.float64)
     axes = [
         lo + (np.arange(n) + 0.5) * (hi - lo) / n
@@ -179,6 +184,17 @@ class SunlitMedium(Representation):
         """The same extinction everywhere; `more` goes to the constructor.
 
         Voxels are needed nevertheless: the light in the medium is not the same everywhere.
+
+        Args:
+            sigma_t: extinction in 1/m.
+            shape: (X, Y, Z) voxels.
+            box: (2, 3) in meters.
+            dt: distance of samples along a ray in meters.
+            albedo: (3,) of scattering.
+            g: asymmetry of the phase function.
+            irradiance: (3,) of the sun.
+            dtype: np.float32 or np.float64.
+            more: arguments of the constructor.
         """
         params = {
             "sigma_t": np.full(shape, sigma_t, dtype),

@@ -114,6 +114,11 @@ class TexturedMesh(Fittable):
         """Raises DtypeError, ShapeError, RangeError or SceneError for arrays that are no such mesh.
 
         A mesh needs texture coordinates, all of them in [0, 1].
+
+        Args:
+            texels: (H, W, 3) raw colors.
+            mesh: held as it is.
+            policy: of the lookup; None takes the default.
         """
         call = Arguments("TexturedMesh")
         texels = call.array("texels", texels, ("H", "W", 3), finite=False, min_length=1)

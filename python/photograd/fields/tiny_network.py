@@ -36,7 +36,12 @@ class TinyNetwork(Representation):
     teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(self, weights: Array, policy: MarchPolicy) -> None:
-        """Raises DtypeError or ShapeError unless weights is a flat array of the network's size."""
+        """Raises DtypeError or ShapeError unless weights is a flat array of the network's size.
+
+        Args:
+            weights: of all layers, flat.
+            policy: box, step and activations.
+        """
         shape = (_core.tiny_network_parameters,)
         weights = Arguments("TinyNetwork").array("weights", weights, shape, finite=False)
         self.params = {"weights": weights}

@@ -76,6 +76,13 @@ class ToyBlobs(Representation):
 
         Raises ShapeError unless the arrays are (N, 2), (N,) and (N, 3) with N >= 1, DtypeError
         unless all are float32 or all float64; RangeError for a `reach` that is not positive.
+
+        Args:
+            mean: (N, 2) on the canvas.
+            log_radius: (N,).
+            color: (N, 3).
+            reach: radii beyond which a blob is not drawn; None draws all.
+            faint: see above.
         """
         call = Arguments("ToyBlobs")
         arrays = {

@@ -56,6 +56,9 @@ class VoxelField(Fittable):
         """Rows (N,) as an array (X, Y, Z), 0 where nothing has a row.
 
         The number of a leaf, which stands for all of its cells, is that of each of them.
+
+        Args:
+            rows: (N,).
         """
 
     @property
@@ -117,14 +120,28 @@ class GridField(VoxelField):
 
     @abstractmethod
     def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> Self:
-        """The same field on a finer grid over the same box, by trilinear interpolation."""
+        """The same field on a finer grid over the same box, by trilinear interpolation.
+
+        Args:
+            resolution: voxels along the longest edge.
+            steps_per_voxel: of the march.
+        """
 
     @abstractmethod
     def resampled(self, rows: Array, to: Any) -> Array:
-        """Rows of this grid, such as an optimizer's moments, on the grid of another."""
+        """Rows of this grid, such as an optimizer's moments, on the grid of another.
+
+        Args:
+            rows: values on this grid.
+            to: the other grid.
+        """
 
     def prune(self, fit: FitInProgress) -> None:
-        """Drop voxels that no view needs; here none."""
+        """Drop voxels that no view needs; here none.
+
+        Args:
+            fit: that asks.
+        """
 
     def adapted(self, fit: FitInProgress) -> Self:
         """Pruned, and at the next level, where the schedule says so."""
@@ -158,7 +175,11 @@ class GridField(VoxelField):
     @classmethod
     @abstractmethod
     def channels(cls, options: FitOptions) -> int:
-        """Numbers of a voxel."""
+        """Numbers of a voxel.
+
+        Args:
+            options: of a fit.
+        """
 
     @classmethod
     def _bytes(cls, box: Array, options: FitOptions) -> int:
@@ -167,7 +188,11 @@ class GridField(VoxelField):
 
 
 def harmonic_rows(options: FitOptions) -> dict[str, Row]:
-    """Of a checkpoint's parameters "density" (N,) and "sh" (N, K, 3)."""
+    """Of a checkpoint's parameters "density" (N,) and "sh" (N, K, 3).
+
+    Args:
+        options: of a fit.
+    """
     return {"density": (FLOAT, ("N",)), "sh": (FLOAT, ("N", sh.count(options.degree), 3))}
 
 
@@ -183,6 +208,10 @@ def require_room_to_refine(grid: GridField, resolution: int) -> None:
 
     It is interpolated from the coarse grid while that still exists. A sparse grid that pruned
     little, of a capture without alpha, can grow eightfold.
+
+    Args:
+        grid: that shall be refined.
+        resolution: voxels along the longest edge.
     """
     now = sum(values.nbytes for values in grid.params.values())
     finer = resolution / grid.resolution

@@ -39,7 +39,12 @@ def require_startable(name: str) -> None:
 
 
 def require_background_of(capture: Capture, options: FitOptions) -> None:
-    """Raise RangeError for a learned background of whole pictures with alpha, which show it."""
+    """Raise RangeError for a learned background of whole pictures with alpha, which show it.
+
+    Args:
+        capture: of the fit.
+        options: of the fit.
+    """
     image = "image" in representation(options.representation).capabilities
     if image and options.background == "learned" and capture.has_alpha:
         raise RangeError(
@@ -53,7 +58,12 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
 
 
 def require_first_model(name: str, *, given: bool) -> None:
-    """Raise RangeError for a model to start from where none is wanted, or none where one is."""
+    """Raise RangeError for a model to start from where none is wanted, or none where one is.
+
+    Args:
+        name: of the representation to be fitted.
+        given: whether there is a model to start from.
+    """
     kind = fittable()[name]
     if given and kind.first_model == "refused":
         others = [n for n, other in fittable().items() if other.first_model != "refused"]
@@ -69,7 +79,12 @@ def require_first_model(name: str, *, given: bool) -> None:
 
 
 def require_split_of(saved: Checkpoint, capture: Capture) -> None:
-    """Raise IoError unless `saved` is the checkpoint of a fit, RangeError if of another split."""
+    """Raise IoError unless `saved` is the checkpoint of a fit, RangeError if of another split.
+
+    Args:
+        saved: a checkpoint.
+        capture: with which the fit shall go on.
+    """
     missing = sorted({"step", "split", "pixels"} - set(saved.meta))
     if missing:
         got = f"one without {missing}"
@@ -82,14 +97,24 @@ def require_split_of(saved: Checkpoint, capture: Capture) -> None:
 
 
 def require_pixels_of(saved: Checkpoint, digest: str) -> None:
-    """Raise RangeError if the training images or cameras are not those of the checkpoint."""
+    """Raise RangeError if the training images or cameras are not those of the checkpoint.
+
+    Args:
+        saved: a checkpoint.
+        digest: of the training images and cameras of the capture.
+    """
     if saved.meta["pixels"] != digest:
         expected = f"the images and cameras {saved.meta['pixels']} of the checkpoint"
         raise RangeError(message("Fit.resume", "capture", expected, digest, _SAME))
 
 
 def require_finite_loss(loss: float, step: int) -> None:
-    """Raise Error for a loss that is NaN or infinite."""
+    """Raise Error for a loss that is NaN or infinite.
+
+    Args:
+        loss: of a step.
+        step: its number.
+    """
     if not math.isfinite(loss):
         raise Error(
             message(
@@ -103,7 +128,12 @@ def require_finite_loss(loss: float, step: int) -> None:
 
 
 def require_finite(params: Mapping[str, Array], step: int) -> None:
-    """Raise Error if a parameter is not finite: a good checkpoint is not replaced by a bad one."""
+    """Raise Error if a parameter is not finite: a good checkpoint is not replaced by a bad one.
+
+    Args:
+        params: parameters by group.
+        step: after which they were found.
+    """
     for name, array in params.items():
         count = array.size - int(np.isfinite(array).sum())
         if count:

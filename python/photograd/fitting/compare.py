@@ -82,6 +82,10 @@ def parse_candidates(text: str, start_from: Model | None = None) -> list[Candida
     representation that a capture cannot start, or one without the model that it starts from: an
     octree without a grid before it, a textured mesh without `start_from`. Or a `start_from` that
     none of them starts from.
+
+    Args:
+        text: names with a resolution or a number, separated by commas.
+        start_from: the model that some of them start from.
     """
     candidates = []
     for word in text.split(","):
@@ -114,6 +118,11 @@ def source_of(
 
     It is `start_from` where that is of a kind to start from, or the model of the nearest candidate
     before it of the same resolution. Raises RangeError if there is none.
+
+    Args:
+        candidate: one of `candidates`.
+        candidates: of the comparison, in order.
+        start_from: the model that was given to start from.
     """
     kind = fittable()[candidate.representation]
     if kind.first_model != "required":
@@ -217,7 +226,12 @@ def stored_bytes(model: Model) -> int:
 
 
 def frame_seconds(model: Model, capture: Capture) -> float:
-    """Median time to draw the first held-out view."""
+    """Median time to draw the first held-out view.
+
+    Args:
+        model: that is drawn.
+        capture: whose first held-out view has the camera.
+    """
     camera = capture.test[0].camera
     times = []
     for _ in range(FRAMES):
@@ -228,14 +242,22 @@ def frame_seconds(model: Model, capture: Capture) -> float:
 
 
 def worst_view(evaluations: Sequence[Evaluation]) -> list[ViewScore]:
-    """What each evaluation says of the view with the lowest mean PSNR over all of them."""
+    """What each evaluation says of the view with the lowest mean PSNR over all of them.
+
+    Args:
+        evaluations: of several models on the same views.
+    """
     scores = np.array([[view.psnr for view in e.views] for e in evaluations])
     index = int(scores.mean(axis=0).argmin())
     return [e.views[index] for e in evaluations]
 
 
 def markdown(scores: Sequence[Score]) -> str:
-    """The table as text, best PSNR of each capture in bold, and the protocols below it."""
+    """The table as text, best PSNR of each capture in bold, and the protocols below it.
+
+    Args:
+        scores: lines of the table.
+    """
     best = {s.capture: max(t.psnr for t in scores if t.capture == s.capture) for s in scores}
     lines = [
         "| capture | representation | PSNR, dB | SSIM | MiB | training, s | frame, ms |",

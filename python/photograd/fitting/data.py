@@ -26,7 +26,12 @@ from photograd.types import Array
 
 
 def background_kind(option: str, *, has_alpha: bool) -> str:
-    """What "auto" means: random where the photographs have alpha, else learned."""
+    """What "auto" means: random where the photographs have alpha, else learned.
+
+    Args:
+        option: `FitOptions.background`.
+        has_alpha: whether the photographs have alpha.
+    """
     if option == "auto":
         return "random" if has_alpha else "learned"
     return option
@@ -51,21 +56,37 @@ def learned_background(raw: Array) -> Array:
 
 
 def learned_background_backward(raw: Array, d_color: Array) -> Array:
-    """d_raw = d_color * color * (1 - color)."""
+    """d_raw = d_color * color * (1 - color).
+
+    Args:
+        raw: (3,) the parameter behind `learned_background`.
+        d_color: (3,) dL/d color.
+    """
     color = learned_background(raw)
     d_raw: Array = d_color * color * (1 - color)
     return d_raw
 
 
 def random_background(count: int, *, seed: int, step: int, first: int = 0) -> Array:
-    """Linear colors (R, 3) float32, uniform in display values, for rays first .. first + R - 1."""
+    """Linear colors (R, 3) float32, uniform in display values, for rays first .. first + R - 1.
+
+    Args:
+        count: R, how many rays.
+        seed: of the fit.
+        step: of the fit.
+        first: number of the first ray in its step.
+    """
     index = 3 * first + np.arange(3 * count)
     u = uniform(seed, step=step, pixel=index, sample=1, dimension=0)
     return srgb_decode(u.reshape(count, 3)).astype(np.float32)
 
 
 def constant_background(kind: str) -> Array:
-    """Linear (3,) float32 of "white" or "black"."""
+    """Linear (3,) float32 of "white" or "black".
+
+    Args:
+        kind: "white" or "black".
+    """
     return np.full(3, {"white": 1.0, "black": 0.0}[kind], np.float32)
 
 
@@ -79,13 +100,19 @@ class TrainingPixels:
     """Premultiplied linear color and alpha of every valid pixel, and the cameras they belong to.
 
     Attributes:
-        premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha. color_space: "display" if
-        the files were 8-bit sRGB (the loss is then taken on encoded values). digest: twelve
-        hexadecimal digits that change with any image or camera.
+        premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha.
+        color_space: "display" if the files were 8-bit sRGB; the loss is then taken on encoded
+            values.
+        digest: twelve hexadecimal digits that change with any image or camera.
     """
 
     def __init__(self, views: Sequence[View], color_space: str) -> None:
-        """Reads every image once. Raises what reading an image raises."""
+        """Reads every image once. Raises what reading an image raises.
+
+        Args:
+            views: the photographs.
+            color_space: of the capture, "display" or "linear".
+        """
         if not views:
             raise RangeError(message("TrainingPixels", "views", "at least one view", "none"))
         self.color_space = color_space
@@ -137,7 +164,11 @@ class TrainingPixels:
         return [(part, len(part) * share) for part in parts]
 
     def batches(self, max_rays: int) -> Iterator[RayBatch]:
-        """Rays of the pixels of `spread`."""
+        """Rays of the pixels of `spread`.
+
+        Args:
+            max_rays: about so many in all.
+        """
         for chosen, _ in self.spread(max_rays):
             yield self.rays(chosen)
 
@@ -157,7 +188,12 @@ class TrainingPixels:
 
 
 def require_valid_pixels(function: str, has_some: Sequence[bool]) -> None:
-    """Raise RangeError if none of the training views has a valid pixel to learn from."""
+    """Raise RangeError if none of the training views has a valid pixel to learn from.
+
+    Args:
+        function: on whose behalf the error speaks.
+        has_some: for each view, whether it has a valid pixel.
+    """
     if not any(has_some):
         raise RangeError(
             message(
@@ -171,7 +207,11 @@ def require_valid_pixels(function: str, has_some: Sequence[bool]) -> None:
 
 
 def digest_of(views: Sequence[View]) -> str:
-    """Of stored bytes rather than decoded pixels, so that it is the same on every machine."""
+    """Of stored bytes rather than decoded pixels, so that it is the same on every machine.
+
+    Args:
+        views: whose images and cameras count.
+    """
     total = hashlib.blake2b(digest_size=6)
     for view in views:
         camera = view.camera
@@ -241,7 +281,13 @@ class TrainingViews:
         return len(self.views)
 
     def draw(self, count: int = 1, *, seed: int, step: int) -> int:
-        """The view of a step, however many rays it may have: each comes once before any again."""
+        """The view of a step, however many rays it may have: each comes once before any again.
+
+        Args:
+            count: not used; a step sees one whole view.
+            seed: of the fit.
+            step: of the fit.
+        """
         del count
         turn, index = divmod(step, len(self.views))
         return int(permutation(seed, len(self.views), step=turn, dimension=8)[index])

@@ -65,7 +65,14 @@ def _require_all(field: Fittable, outputs: Outputs) -> tuple[Array, Array, Array
 def display_field(
     field: Fittable, background: Array | None, camera: Camera, stop: float = 1e-4
 ) -> Array:
-    """The field (H, W, 3) in display values, over white or a linear background (3,)."""
+    """The field (H, W, 3) in display values, over white or a linear background (3,).
+
+    Args:
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+        camera: where it is seen from.
+        stop: transmittance below which a ray ends.
+    """
     color, opacity, _ = render_field(field, camera, stop)
     if field.color_space == "display":
         behind = 1.0 if background is None else srgb_encode(background)
@@ -79,13 +86,23 @@ def display_field(
 
 
 def over_white(encoded: Array, alpha: Array) -> Array:
-    """Straight display values over white, clipped and rounded to 8 bits."""
+    """Straight display values over white, clipped and rounded to 8 bits.
+
+    Args:
+        encoded: (H, W, 3) display values, straight.
+        alpha: (H, W).
+    """
     alpha = alpha[..., None]
     return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
 
 
 def portrait(field: Fittable, background: Array | None) -> Array:
-    """The field (H, W, 3) in display values, from a camera in front of its box."""
+    """The field (H, W, 3) in display values, from a camera in front of its box.
+
+    Args:
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+    """
     own = field.turntable(1, size=PORTRAIT, elevation=25.0, background=background)
     if own is not None:
         return next(iter(own))
@@ -99,6 +116,12 @@ def field_html(
     """What a notebook shows of a field: its size, some facts, a picture.
 
     A field that cannot be drawn is shown without a picture, and with the reason.
+
+    Args:
+        title: a heading.
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+        facts: rows of the table, by name.
     """
     size = " x ".join(map(str, field.shape))
     stored = sum(array.nbytes for array in field.stored().values())

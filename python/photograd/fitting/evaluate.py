@@ -92,24 +92,43 @@ def render_camera(
     """Premultiplied color (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
 
     Colors are linear or display values, as the field's `color_space` says.
+
+    Args:
+        model: what is drawn.
+        camera: where it is seen from.
+        stop: transmittance below which a ray ends.
     """
     return render_field(model.field, camera, stop)
 
 
 def display_image(model: Model, camera: Camera) -> Array:
-    """The model (H, W, 3) in display values, over white or its learned background."""
+    """The model (H, W, 3) in display values, over white or its learned background.
+
+    Args:
+        model: what is drawn.
+        camera: where it is seen from.
+    """
     return display_field(model.field, model.background, camera)
 
 
 def truth_image(view: View) -> Array:
-    """The photograph (H, W, 3) under the same protocol."""
+    """The photograph (H, W, 3) under the same protocol.
+
+    Args:
+        view: the photograph.
+    """
     rgba = view.rgba().astype(np.float64)
     color = display_color(rgba[..., :3], view.color_space)
     return over_white(color, rgba[..., 3])
 
 
 def score_view(model: Model, view: View) -> ViewScore | None:
-    """Score the model on one photograph; None if that has no 11 x 11 window of valid pixels."""
+    """Score the model on one photograph; None if that has no 11 x 11 window of valid pixels.
+
+    Args:
+        model: what is scored.
+        view: a photograph that it has not seen.
+    """
     valid = view.valid_mask()
     if not whole_windows(valid).any():
         return None
@@ -173,7 +192,13 @@ def evaluate(
 
 
 def protocol(model: Model, scores: Sequence[ViewScore], left_out: Sequence[str] = ()) -> str:
-    """The sentence that belongs next to every number."""
+    """The sentence that belongs next to every number.
+
+    Args:
+        model: that was scored.
+        scores: of its views.
+        left_out: names of views without a score.
+    """
     sizes = sorted({(score.valid.shape[1], score.valid.shape[0]) for score in scores})
     size = ", ".join(f"{w}x{h}" for w, h in sizes)
     behind = "white" if model.background is None else "white, render over its learned background"
@@ -229,6 +254,11 @@ def step_change(
 
     Colors are premultiplied and as the field has them, so that no background takes part; rays are
     not stopped early.
+
+    Args:
+        model: whose step is halved.
+        views: whose cameras are taken.
+        max_views: at most so many of them.
     """
     dt = model.field.dt
     if dt is None or not views:
@@ -249,5 +279,9 @@ def step_change(
 
 
 def as_entry(change: StepChange | None) -> dict[str, Any]:
-    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step."""
+    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step.
+
+    Args:
+        change: what `step_change` returned.
+    """
     return {} if change is None else {"half_step": asdict(change)}

@@ -38,6 +38,13 @@ def load_fog(
     """What `fog_model` makes of the first scalar grid in a .vdb file, or of a volume's density.
 
     Raises IoError as `photograd.grids.read_vdb` and `photograd.grids.read_volume` as well.
+
+    Args:
+        path: a .vdb file, or a volume: .vtk, .nii, .nii.gz or .vol.
+        ramp: name of the colors over density.
+        sigma_t: extinction in 1/m of the largest density; None takes a default.
+        resolution: voxels along the longest edge at most.
+        window: values of a volume that become density 0 and 1; None takes all.
     """
     if path.name.lower().endswith(SUFFIXES):
         volume = read_volume(path)

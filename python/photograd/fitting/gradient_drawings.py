@@ -107,7 +107,12 @@ def _frame(found: ViewGradients) -> tuple[float, float, float, float]:
 
 
 def draw_arrows(axes: Axes, found: ViewGradients) -> None:
-    """Downhill, for the most pulled Gaussians of this view."""
+    """Downhill, for the most pulled Gaussians of this view.
+
+    Args:
+        axes: of Matplotlib, in pixels of the view.
+        found: of the view.
+    """
     strength = np.hypot(found.screen[:, 0], found.screen[:, 1])
     strength = np.where(found.visible, strength, 0)
     rows = np.argsort(-strength, kind="stable")[:ARROWS]

@@ -91,7 +91,11 @@ def group_gradients(
 
 
 def draw_group_gradients(rows: Mapping[int, GroupGradients]) -> Figure:
-    """A row of panels for each step."""
+    """A row of panels for each step.
+
+    Args:
+        rows: {step: gradients}.
+    """
     first = next(iter(rows.values()))
     count = 3 if first.image is None else 4
     width = LEFT + count * (PANEL + GAP)

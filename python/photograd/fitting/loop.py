@@ -65,12 +65,28 @@ class Fit:
 
     `Fit.start` begins one, `Fit.resume` continues from a folder; `run` goes on until the end,
     saving a checkpoint every `checkpoint_seconds` and whenever `should_stop()` says so.
+
+    Attributes:
+        capture: the photographs.
+        options: of the fit.
+        model: the field as it is now, a representation; `load_model` makes a `Model` of what `run`
+            saved.
+        background: (3,) parameter of a learned background, or None.
+        step_number: how many steps were done.
+        history: (step, loss, PSNR of the batch in dB) of each.
     """
 
     def __init__(
         self, capture: Capture, options: FitOptions, model: Fittable, background: Array | None
     ) -> None:
-        """Use `start` or `resume`."""
+        """Use `start` or `resume`.
+
+        Args:
+            capture: the photographs.
+            options: of the fit.
+            model: the field at the first step.
+            background: (3,) parameter of a learned background, or None.
+        """
         self.capture = capture
         self.options = options
         self.model = model
@@ -95,12 +111,19 @@ class Fit:
     ) -> Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
-        Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
-        from one, and a textured mesh needs one with its mesh.
+        Args:
+            capture: the photographs.
+            options: of the fit; `options_for` has those of a representation. Grids begin coarse:
+                see `FitOptions`.
+            allow_blind: accept training cameras that do not see the scene's box, if any does.
+            start_from: another model: Gaussians may begin on its surfaces, the leaves of an octree
+                have to be cut from one, and a textured mesh needs one with its mesh.
 
-        Raises RangeError for an unknown or unfit representation, or options that take more memory
-        than there is; SceneError naming the training cameras that do not see the scene's box (with
-        `allow_blind` only if none does).
+        Raises:
+            DtypeError: no `Capture`, or no `FitOptions`.
+            RangeError: an unknown representation, or one that no capture can start; options that
+                take more memory than there is.
+            SceneError: training cameras that do not see the scene's box; names them.
         """
         require_instance("Fit.start", "capture", capture, Capture, "load_capture reads one")
         require_instance("Fit.start", "options", options, FitOptions)
@@ -127,10 +150,15 @@ class Fit:
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`.
+        """Continue the fit that left a checkpoint in a folder.
 
-        Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
-        capture: other names, other images, other cameras or another size.
+        Args:
+            capture: that the fit was started on.
+            folder: that `run` was given.
+
+        Raises:
+            IoError: a missing or damaged checkpoint.
+            RangeError: one of another capture: other names, images, cameras or another size.
         """
         saved = load_checkpoint(folder)
         model = model_of(saved, folder)
@@ -178,14 +206,22 @@ class Fit:
         return self.data.draw(options.rays, seed=options.seed, step=self.step_number)
 
     def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
-        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior."""
+        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior.
+
+        Args:
+            chosen: what `draw` returned.
+        """
         behind = Background(self.background, self.background_kind)
         found = self.data.loss_and_grad(self.model, chosen, behind, self.options, self.step_number)
         self.batch_psnr = found.psnr
         return found.loss, found.gradients
 
     def batches(self, max_rays: int) -> Iterator[RayBatch]:
-        """Rays of all training views, evenly spaced, at most about `max_rays`."""
+        """Rays of all training views, evenly spaced, at most about `max_rays`.
+
+        Args:
+            max_rays: about so many in all.
+        """
         return self.data.batches(max_rays)
 
     def mean_gradient(self, group: str, max_rays: int) -> Array:
@@ -261,6 +297,9 @@ class Fit:
 
         Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
         never replaced by a bad one.
+
+        Args:
+            folder: DIR, which exists.
         """
         require_finite(self.model.params, self.step_number)
         params = dict(self.model.params)

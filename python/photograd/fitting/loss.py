@@ -72,6 +72,12 @@ def image_loss(
 
     `premultiplied` holds color times alpha, and alpha; the dtype is that of the rendering. Raises
     ShapeError if the rendering has no opacity, or shapes do not belong together.
+
+    Args:
+        outputs: the rendering of R rays.
+        premultiplied: (R, 4) the photograph.
+        background: (3,) or (R, 3).
+        display: whether the loss is taken on display-encoded values.
     """
     opacity = _opacity("image_loss", outputs)
     dtype = outputs.color.dtype
@@ -107,7 +113,11 @@ def _opacity(function: str, outputs: Outputs) -> Array:
 
 
 def image_loss_backward(loss: ImageLoss) -> tuple[Outputs, Array]:
-    """dL/d color (R, 3) and dL/d opacity (R,) as Outputs, and dL/d background in its own shape."""
+    """dL/d color (R, 3) and dL/d opacity (R,) as Outputs, and dL/d background in its own shape.
+
+    Args:
+        loss: what `image_loss` returned.
+    """
     d_image = l2_backward(loss.encoded, loss.target)
     d_truth = -d_image
     if loss.display:
@@ -121,7 +131,11 @@ def image_loss_backward(loss: ImageLoss) -> tuple[Outputs, Array]:
 
 
 def decibels(mean_square: float) -> float:
-    """PSNR in dB of a mean squared error against a peak of 1, at most 120."""
+    """PSNR in dB of a mean squared error against a peak of 1, at most 120.
+
+    Args:
+        mean_square: mean squared error.
+    """
     return -10.0 / LN_10 * float(log(max(mean_square, 1e-12)))
 
 
@@ -133,6 +147,10 @@ def ssim(x: Array, y: Array) -> float:
 
     11 x 11 Gaussian window of sigma 1.5, only windows that lie inside, each channel on its own.
 
+    Args:
+        x: (H, W, C).
+        y: (H, W, C) of the same dtype.
+
     Raises:
         DtypeError, ShapeError, RangeError: not both float32 or float64, of different shapes,
             smaller than the window, or of more than four channels.
@@ -143,8 +161,13 @@ def ssim(x: Array, y: Array) -> float:
 def ssim_backward(x: Array, y: Array, d_value: float = 1.0) -> tuple[float, Array]:
     """The value, which costs nothing more, and d_x = d_value dssim/dx in the shape of x.
 
+    Args:
+        x: (H, W, C).
+        y: (H, W, C) of the same dtype.
+        d_value: dL/d of the value.
+
     Raises:
-        What `ssim` raises.
+        DtypeError, ShapeError, RangeError: as `ssim`.
     """
     x = np.ascontiguousarray(x)
     d_x = np.zeros_like(x)
@@ -172,7 +195,14 @@ class PictureLoss:
 def picture_loss(
     outputs: Outputs, view: TrainingView, background: Array, *, ssim_weight: float
 ) -> PictureLoss:
-    """Loss of a rendering of `view.camera` over a display color (3,); shapes as `Outputs`."""
+    """Loss of a rendering of `view.camera` over a display color (3,); shapes as `Outputs`.
+
+    Args:
+        outputs: the rendering of all pixels of the view.
+        view: the photograph.
+        background: (3,) display color.
+        ssim_weight: w, the share of 1 - SSIM.
+    """
     shape = view.premultiplied.shape[:2]
     dtype = outputs.color.dtype
     behind = np.asarray(background, dtype)
@@ -195,7 +225,11 @@ def picture_loss(
 
 
 def picture_loss_backward(loss: PictureLoss) -> tuple[Outputs, Array]:
-    """dL/d color (P, 3) and opacity (P,) as Outputs, and dL/d background (3,)."""
+    """dL/d color (P, 3) and opacity (P,) as Outputs, and dL/d background (3,).
+
+    Args:
+        loss: what `picture_loss` returned.
+    """
     share = (1 - loss.ssim_weight) / loss.image.size
     d_image = np.sign(loss.image - loss.truth) * loss.image.dtype.type(share)
     if loss.d_ssim is not None:

@@ -94,6 +94,10 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
     """The model in a checkpoint.
 
     Raises IoError if its contents, the optimizer's state included, do not fit together.
+
+    Args:
+        saved: a checkpoint.
+        path: where it was read, for errors.
     """
     try:
         options = from_plain("checkpoint", FitOptions, saved.meta.get("options"))
@@ -113,6 +117,10 @@ def check_checkpoint(saved: Checkpoint, options: FitOptions) -> None:
     """Raise DtypeError, ShapeError or RangeError that names what a fit could not go on with.
 
     The state of the optimizer may be empty, as in snapshots; a group of it is complete or absent.
+
+    Args:
+        saved: a checkpoint.
+        options: of its fit.
     """
     step = checked_step(saved)
     for name in sorted(saved.meta.keys() & set(TEXTS)):
@@ -142,17 +150,33 @@ FRACTIONS = (0.0, 0.03, 0.1, 0.3, 1.0)
 
 
 def snapshot_steps(options: FitOptions) -> set[int]:
-    """The steps after which a fit keeps a snapshot; step 0 is the start."""
+    """The steps after which a fit keeps a snapshot; step 0 is the start.
+
+    Args:
+        options: of the fit.
+    """
     return {int(fraction * options.steps) for fraction in FRACTIONS}
 
 
 def snapshot_file(folder: Path, step: int) -> Path:
-    """Where the snapshot of a step lies."""
+    """Where the snapshot of a step lies.
+
+    Args:
+        folder: of the fit.
+        step: after which it was written.
+    """
     return folder / "snapshots" / f"step_{step:06d}.npz"
 
 
 def save_snapshot(folder: Path, field: Fittable, options: FitOptions, step: int) -> None:
-    """Write the field as it is now."""
+    """Write the field as it is now.
+
+    Args:
+        folder: of the fit.
+        field: as it is now.
+        options: of the fit.
+        step: after which it is written.
+    """
     meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
     make_folder(folder / "snapshots")
     save_checkpoint(
@@ -162,7 +186,11 @@ def save_snapshot(folder: Path, field: Fittable, options: FitOptions, step: int)
 
 
 def load_snapshots(folder: Path) -> dict[int, Fittable]:
-    """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
+    """{step: field} of all snapshots of a fit, in order; empty if it kept none.
+
+    Args:
+        folder: of the fit, or a file in it.
+    """
     beside = folder if folder.is_dir() else folder.parent
     found = {}
     for file in sorted((beside / "snapshots").glob("step_*.npz")):

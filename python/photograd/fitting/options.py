@@ -110,7 +110,12 @@ class Pace:
         self._marks = deque([(now, 0)])  # time, and rays until then
 
     def after(self, rays: int, now: float) -> float:
-        """The pace after a step of so many rays that ended at this time, in seconds."""
+        """The pace after a step of so many rays that ended at this time, in seconds.
+
+        Args:
+            rays: of the step.
+            now: in seconds.
+        """
         marks = self._marks
         self._rays += rays
         marks.append((now, self._rays))

@@ -23,6 +23,9 @@ def quality_plot(scores: Sequence[Score]) -> Figure:
 
     Up is better, left is smaller; beside each mark stand its training seconds. Candidates of one
     representation share a color.
+
+    Args:
+        scores: of candidates on one or more captures.
     """
     captures = list(dict.fromkeys(score.capture for score in scores))
     labels = list(dict.fromkeys(score.candidate for score in scores))

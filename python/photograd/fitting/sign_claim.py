@@ -49,6 +49,13 @@ def sign_claim(
     """Weigh the signs of the first gradient; None if voxels of one kind are missing throughout.
 
     Raises RangeError if the capture has no alpha.
+
+    Args:
+        field: a nearly transparent start.
+        capture: photographs with alpha.
+        rays: training pixels of the gradient.
+        seed: of their choice.
+        background: linear (3,), or None for random ones.
     """
     total, most, best = len(capture.train), 0, None
     for count in (total, *(n for n in VIEW_COUNTS if n < total)):

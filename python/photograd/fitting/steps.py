@@ -64,7 +64,15 @@ class PixelBatches(TrainingPixels):
     def loss_and_grad(
         self, field: Fittable, chosen: Any, background: Background, options: FitOptions, step: int
     ) -> LossAndGrad:
-        """Mean squared error of the chosen pixels."""
+        """Mean squared error of the chosen pixels.
+
+        Args:
+            field: what is fitted.
+            chosen: pixel numbers, as `draw` returns them.
+            background: behind the scene.
+            options: of the fit.
+            step: its number, for random numbers.
+        """
         outputs, context = field.render(
             self.rays(chosen),
             seed=options.seed,
@@ -88,7 +96,15 @@ class ViewBatches(TrainingViews):
     def loss_and_grad(
         self, field: Fittable, chosen: Any, background: Background, options: FitOptions, step: int
     ) -> LossAndGrad:
-        """Absolute error and SSIM of one view."""
+        """Absolute error and SSIM of one view.
+
+        Args:
+            field: what is fitted.
+            chosen: number of a view, as `draw` returns it.
+            background: behind the scene.
+            options: of the fit.
+            step: its number, for random numbers.
+        """
         view = self.views[chosen]
         behind = display_background(background, seed=options.seed, step=step)
         outputs, context = field.render(
@@ -109,7 +125,12 @@ class ViewBatches(TrainingViews):
 
 
 def training_data(capture: Capture, field: Fittable) -> PixelBatches | ViewBatches:
-    """The photographs in the form that a field learns from."""
+    """The photographs in the form that a field learns from.
+
+    Args:
+        capture: whose training views are taken.
+        field: its capabilities decide whether pixels or whole views are drawn.
+    """
     if "rays" in field.capabilities:
         return PixelBatches(capture.train, capture.color_space)
     return ViewBatches(capture.train)
@@ -119,6 +140,12 @@ def background_color(background: Background, count: int, *, seed: int, step: int
     """Linear background of each ray of a batch, (R, 3) or (3,).
 
     Random ones are a function of the seed and the step.
+
+    Args:
+        background: kind, and the parameter of a learned one.
+        count: R, how many rays.
+        seed: of the fit.
+        step: of the fit.
     """
     if background.raw is not None:
         return learned_background(background.raw)
@@ -128,7 +155,13 @@ def background_color(background: Background, count: int, *, seed: int, step: int
 
 
 def display_background(background: Background, *, seed: int, step: int) -> Array:
-    """Display color (3,) behind a picture; a random one is a function of the seed and the step."""
+    """Display color (3,) behind a picture; a random one is a function of the seed and the step.
+
+    Args:
+        background: kind, and the parameter of a learned one.
+        seed: of the fit.
+        step: of the fit.
+    """
     if background.raw is not None:
         found: Array = srgb_encode(learned_background(background.raw))
         return found

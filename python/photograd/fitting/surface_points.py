@@ -28,6 +28,12 @@ def surface_points(model: Model, capture: Capture, count: int, *, seed: int) -> 
 
     Evenly over the covered pixels of at most 60 views.
 
+    Args:
+        model: what is drawn.
+        capture: whose training cameras see it.
+        count: at most so many points.
+        seed: of the choice of pixels.
+
     Raises:
         SceneError: the model covers no pixel of any of them.
     """

@@ -67,6 +67,12 @@ def view_gradients(
 
     Over white. Does not touch the scene's own statistics.
 
+    Args:
+        scene: Gaussians.
+        views: the photographs.
+        number: of the view that is drawn.
+        ssim_weight: share of 1 - SSIM in the loss.
+
     Raises:
         IndexError: there is no such view.
     """
@@ -110,6 +116,10 @@ def screen_covariances(gaussians: Gaussians, camera: Camera) -> Array:
     """(N, 2, 2) covariances of the Gaussians on the screen, in pixel^2; NaN behind the camera.
 
     J W R S S^T R^T W^T J^T with the projection's Jacobian J at the mean [Zwicker2001].
+
+    Args:
+        gaussians: N of them.
+        camera: where they are seen from.
     """
     view = invert_rigid(camera.world_from_camera)
     local = gaussians.means.astype(np.float64) @ view[:3, :3].T + view[:3, 3]
@@ -127,7 +137,13 @@ def screen_covariances(gaussians: Gaussians, camera: Camera) -> Array:
 
 
 def grad2d_picture(gaussians: Gaussians, grad2d: Array, camera: Camera) -> Array:
-    """(H, W) grad2d as the camera would see it, if it were what Gaussians show; 0 in between."""
+    """(H, W) grad2d as the camera would see it, if it were what Gaussians show; 0 in between.
+
+    Args:
+        gaussians: N of them.
+        grad2d: (N,) positional gradients.
+        camera: where they are seen from.
+    """
     top = max(float(grad2d.max()), 1e-30)
     plain = (grad2d / top - 0.5) / sh.Y_0
     arrays = gaussians.arrays() | {"sh": np.repeat(plain[:, None, None], 3, axis=2)}

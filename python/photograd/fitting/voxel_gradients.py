@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from photograd._checks import require_instance
 from photograd._notebook import png, signed_colors, smaller
 from photograd.capture.capture import Capture
 from photograd.capture.view import View
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels, random_background
 from photograd.fitting.loss import image_loss, image_loss_backward
@@ -47,18 +48,45 @@ class DensityGradient:
 
 def density_gradient(
     field: VoxelField,
-    pixels: TrainingPixels,
+    capture: Capture | TrainingPixels,
     *,
     seed: int,
     background: Array | None = None,
     rays: int = 1 << 20,
 ) -> DensityGradient:
-    """The loss over `rays` random training pixels and its gradient with respect to sigma_t.
+    """The loss over random training pixels and its gradient with respect to sigma_t.
 
-    Each ray gets a random background unless one (3,) is given: over one fixed background, matter of
-    the background's color would be invisible and its gradient zero. All cells of an octree's leaf
-    show the gradient with respect to the leaf's sigma_t, the sum over what the leaf stands for.
+    `photograd_course.viz.signed_projections` draws it. All cells of an octree's leaf show the
+    gradient with respect to the leaf's sigma_t, the sum over what the leaf stands for.
+
+    Args:
+        field: of a model, such as `fit(capture).field`: a grid or an octree.
+        capture: the photographs, or what `training_data` made of them.
+        seed: of the choice of pixels, and of random backgrounds.
+        background: linear (3,) behind the scene. None gives each ray a random one: over one fixed
+            background, matter of the background's color would be invisible, its gradient zero.
+        rays: how many pixels are drawn.
+
+    Raises:
+        DtypeError: a field without voxels, or no capture.
+
+    Example:
+        >>> from photograd.fitting import density_gradient
+        >>> from photograd_course.viz import save_figure, signed_projections
+        >>> capture = photograd.load_capture("photos")
+        >>> field = photograd.fit(capture, resolution=16, steps=20, rays=256).field
+        >>> found = density_gradient(field, capture, seed=0, rays=4096)
+        >>> figure = signed_projections(found.d_sigma_t, field.box, active=found.active)
+        >>> _ = save_figure(figure, "gradient.png")
     """
+    if not isinstance(field, VoxelField):
+        expected, got = "a field of voxels, such as DenseGrid", type(field).__name__
+        remedy = "pass the .field of a Model" if hasattr(field, "field") else None
+        raise DtypeError(message("density_gradient", "field", expected, got, remedy))
+    pixels = capture
+    if not isinstance(pixels, TrainingPixels):
+        require_instance("density_gradient", "capture", capture, Capture, "load_capture reads one")
+        pixels = TrainingPixels(pixels.train, pixels.color_space)
     chosen = pixels.draw(rays, seed=seed, step=0)
     display = pixels.color_space == "display"
     total, loss = np.zeros(len(field.density_rows(field.params))), 0.0
@@ -96,6 +124,10 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     it covers, in every view, are opaque, and background-only if all of them are empty. Voxels that
     fewer than two views see are neither, nor are those that a sparse grid lacks. Raises RangeError
     if the capture has no alpha.
+
+    Args:
+        field: whose voxels are classified.
+        capture: photographs with alpha.
     """
     if not capture.has_alpha:
         raise RangeError(

@@ -302,7 +302,8 @@ class Body:
         not end in a hit beyond t_min count for nothing.
 
         Raises:
-            As `trace`; ShapeError: hits or d_t of other rays.
+            RangeError: as `trace`.
+        ShapeError: as `trace`, and for hits or d_t of other rays.
         """
         call = Arguments("Body.trace_backward", np.float64)
         rays = checked_rays(call, origins, directions)

@@ -76,11 +76,20 @@ class Representation(ABC):
     @classmethod
     @abstractmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Representation:
-        """A small instance with lively values, for proofs and pictures."""
+        """A small instance with lively values, for proofs and pictures.
+
+        Args:
+            seed: other seeds, other values.
+            dtype: of the parameters.
+        """
 
     @abstractmethod
     def example_batch(self, *, seed: int) -> Any:
-        """A batch that sees something of `example`."""
+        """A batch that sees something of `example`.
+
+        Args:
+            seed: other seeds, other rays or points.
+        """
 
     @abstractmethod
     def param_groups(self) -> Mapping[str, ParamSpec]:
@@ -93,11 +102,22 @@ class Representation(ABC):
         """Outputs for the batch, and the context that `render_backward` needs.
 
         The context keeps the parameters that it was made with, also if `params` changes later.
+
+        Args:
+            batch: of the kind that `capabilities` names.
+            seed: of random numbers, such as jitter.
+            step: of the fit, for other random numbers at each.
+            options: policies of this rendering.
         """
 
     @abstractmethod
     def render_backward(self, context: Any, d_outputs: Outputs) -> Gradients:
-        """dL/d parameters for the rendering that left `context`, given dL/d outputs."""
+        """dL/d parameters for the rendering that left `context`, given dL/d outputs.
+
+        Args:
+            context: the second result of `render`.
+            d_outputs: of the shapes of the outputs; None for an output stands for zeros.
+        """
 
     def priors(self) -> Sequence[Prior]:
         """Regularizers that make sense for this representation."""
@@ -108,6 +128,10 @@ class Representation(ABC):
 
         The optimizer applies the returned map (rows kept, cloned, split, added) to its own state.
         Contexts of earlier renderings keep the parameters that they were made with.
+
+        Args:
+            step: of the fit.
+            statistics: arrays that the caller has collected.
         """
         del step, statistics
         return None

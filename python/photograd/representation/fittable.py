@@ -67,10 +67,19 @@ class FitInProgress(Protocol):
         """Its moments belong to the field's parameters."""
 
     def batches(self, max_rays: int) -> Iterator[RayBatch]:
-        """Rays of all training views, evenly spaced."""
+        """Rays of all training views, evenly spaced.
+
+        Args:
+            max_rays: about so many in all.
+        """
 
     def mean_gradient(self, group: str, max_rays: int) -> Array:
-        """dL/d params[group] of the loss over all training views, from evenly spaced rays."""
+        """dL/d params[group] of the loss over all training views, from evenly spaced rays.
+
+        Args:
+            group: of parameters.
+            max_rays: about so many in all.
+        """
 
 
 class Fittable(Representation):
@@ -127,18 +136,30 @@ class Fittable(Representation):
         return None
 
     def with_dt(self, dt: float) -> Self:
-        """The same field with samples at another distance; parameters are shared."""
+        """The same field with samples at another distance; parameters are shared.
+
+        Args:
+            dt: distance of samples along a ray in meters.
+        """
         raise RangeError(message(f"{self.name}.with_dt", "dt", "a field with samples", dt))
 
     @classmethod
     @abstractmethod
     def start(cls, start: Start) -> tuple[Self, str]:
-        """What a fit begins with, and a sentence on where it comes from."""
+        """What a fit begins with, and a sentence on where it comes from.
+
+        Args:
+            start: photographs, their box, options, and a model to start from.
+        """
 
     @classmethod
     @abstractmethod
     def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
-        """Types and shapes of the parameters and of the state in a checkpoint."""
+        """Types and shapes of the parameters and of the state in a checkpoint.
+
+        Args:
+            options: of the fit.
+        """
 
     @classmethod
     @abstractmethod
@@ -152,16 +173,33 @@ class Fittable(Representation):
         """The field of a checkpoint whose arrays fit `checkpoint_rows`; `policy` as JSON has it.
 
         Raises Error where a policy or the values of the state make no sense.
+
+        Args:
+            params: of the checkpoint.
+            state: of the checkpoint.
+            policy: as JSON has it.
+            options: of the fit.
         """
 
     @classmethod
     def memory(cls, box: Array, options: FitOptions, available: int) -> Sequence[Memory]:
-        """Lower bounds of what a fit in a box (2, 3) takes, besides photographs and rays."""
+        """Lower bounds of what a fit in a box (2, 3) takes, besides photographs and rays.
+
+        Args:
+            box: (2, 3) of the scene, in meters.
+            options: of the fit.
+            available: bytes that there are.
+        """
         del box, options, available
         return ()
 
     def learning_rates(self, options: FitOptions, step: int) -> dict[str, float]:
-        """Of every group at a step."""
+        """Of every group at a step.
+
+        Args:
+            options: of the fit.
+            step: its number.
+        """
         rate = options.learning_rate * exponential(options.final_rate, options.steps)(step)
         return {name: spec.learning_rate * rate for name, spec in self.param_groups().items()}
 
@@ -174,20 +212,39 @@ class Fittable(Representation):
         return self
 
     def observe(self, context: Any, gradients: dict[str, Array]) -> None:
-        """Take notice of a training batch after its backward pass, and add gradients of its own."""
+        """Take notice of a training batch after its backward pass, and add gradients of its own.
+
+        Args:
+            context: of the batch's rendering.
+            gradients: by group, changed in place.
+        """
 
     def add_prior(self, gradients: Mapping[str, Array], weight: float, u: float) -> None:
         """Add the prior's gradient on a part of the parameters that stands for all of them.
 
         `u` in [0, 1) says which part.
+
+        Args:
+            gradients: by group, changed in place.
+            weight: `FitOptions.total_variation`.
+            u: a random number in [0, 1).
         """
 
     def after_step(self, rates: Mapping[str, float], step: int) -> None:
-        """What follows the optimizer's step."""
+        """What follows the optimizer's step.
+
+        Args:
+            rates: learning rates by group.
+            step: its number.
+        """
 
     @classmethod
     def events(cls, options: FitOptions) -> dict[int, str]:
-        """{step: label} of changes that a curve of the loss should mark."""
+        """{step: label} of changes that a curve of the loss should mark.
+
+        Args:
+            options: of the fit.
+        """
         del options
         return {}
 
@@ -198,12 +255,23 @@ class Fittable(Representation):
     def turntable(
         self, count: int, *, size: int, elevation: float, background: Array | None
     ) -> Iterator[Array] | None:
-        """Pictures from a circle of cameras, where they differ from those of its box; or None."""
+        """Pictures from a circle of cameras, where they differ from those of its box; or None.
+
+        Args:
+            count: of cameras.
+            size: pixels along an edge.
+            elevation: of the cameras, in degrees.
+            background: linear (3,), or None for white.
+        """
         del count, size, elevation, background
         return None
 
     def gradient_image(self, gradients: Mapping[str, Array]) -> Array | None:
-        """(H, W) what a signed picture of the parameters' gradient shows; None for no picture."""
+        """(H, W) what a signed picture of the parameters' gradient shows; None for no picture.
+
+        Args:
+            gradients: by group.
+        """
         del gradients
         return None
 
@@ -213,6 +281,10 @@ class Fittable(Representation):
         Here: parameters, state and box as NumPy arrays, with the linear background (3,).
 
         Raises IoError if that fails.
+
+        Args:
+            path: of the file.
+            background: linear (3,), or None.
         """
         arrays = {**self.stored(), "box": self.box}
         if background is not None:

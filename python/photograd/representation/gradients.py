@@ -85,18 +85,33 @@ class GradientProblem:
     def render(
         self, params: Mapping[str, Array], batch: Any, options: RenderOptions
     ) -> tuple[Outputs, Any]:
-        """What the representation returns with these parameters."""
+        """What the representation returns with these parameters.
+
+        Args:
+            params: by group.
+            batch: what is rendered.
+            options: of the rendering.
+        """
         self.field.params = dict(params)
         return self.field.render(batch, seed=SEED, step=STEP, options=options)
 
     def forward(self, params: Mapping[str, Array]) -> dict[str, Array]:
-        """The outputs that there are, by name."""
+        """The outputs that there are, by name.
+
+        Args:
+            params: by group.
+        """
         return _named(self.render(params, self.batch, self.options)[0])
 
     def backward(
         self, params: Mapping[str, Array], d_outputs: Mapping[str, Array]
     ) -> dict[str, Array]:
-        """dL/d each group of parameters for dL/d each output."""
+        """dL/d each group of parameters for dL/d each output.
+
+        Args:
+            params: by group.
+            d_outputs: by output.
+        """
         _, context = self.render(params, self.batch, self.options)
         found = self.field.render_backward(context, Outputs(**d_outputs))
         return {name: dense_gradient(found[name], params[name]) for name in params if name in found}
@@ -111,14 +126,23 @@ class GradientProblem:
         return {"origins": self.batch.origins, "directions": self.batch.directions}
 
     def forward_camera(self, camera: Mapping[str, Array]) -> dict[str, Array]:
-        """The outputs with another `camera`."""
+        """The outputs with another `camera`.
+
+        Args:
+            camera: arrays by name, as `camera` returns them.
+        """
         moved: Any = replace(self.batch, **camera)
         return _named(self.render(self.params, moved, self.options)[0])
 
     def backward_camera(
         self, camera: Mapping[str, Array], d_outputs: Mapping[str, Array]
     ) -> dict[str, Array]:
-        """dL/d each array of `camera` for dL/d each output."""
+        """dL/d each array of `camera` for dL/d each output.
+
+        Args:
+            camera: arrays by name, as `camera` returns them.
+            d_outputs: by output.
+        """
         moved: Any = replace(self.batch, **camera)
         options = replace(self.options, camera_adjoint=True)
         _, context = self.render(self.params, moved, options)
@@ -128,7 +152,13 @@ class GradientProblem:
     def forward_derivative(
         self, params: Mapping[str, Array], directions: Mapping[str, Array], step: float
     ) -> dict[str, Array]:
-        """J v by central differences; `step` is in root mean squares of what moves."""
+        """J v by central differences; `step` is in root mean squares of what moves.
+
+        Args:
+            params: by group.
+            directions: v, by group.
+            step: of the differences.
+        """
         moving = [name for name, direction in directions.items() if direction.any()]
         width = step * max((group_scale(params[name]) for name in moving), default=1.0)
         ends = [

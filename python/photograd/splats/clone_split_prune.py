@@ -75,7 +75,14 @@ class CloneSplitPrune(DensityControl):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """Rows kept in their order, then clones, then the parts of split ones."""
+        """Rows kept in their order, then clones, then the parts of split ones.
+
+        Args:
+            params: of the Gaussians, by group.
+            grad2d: positional gradients since the last change.
+            extent: of the scene, in meters.
+            step: of the fit.
+        """
         if not self.schedule.due(step):
             return None
         alpha = opacities(params)

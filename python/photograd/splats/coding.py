@@ -65,7 +65,13 @@ class Difference:
 
 
 def differences(before: Gaussians, after: Gaussians, codings: Codings) -> list[Difference]:
-    """Attribute by attribute, rows in the same order; harmonics as far as both have them."""
+    """Attribute by attribute, rows in the same order; harmonics as far as both have them.
+
+    Args:
+        before: Gaussians that were written.
+        after: what was read back.
+        codings: what the format keeps of each attribute.
+    """
     then, now = _attributes(before), _attributes(after)
     found = []
     for name, coding in codings.items():
@@ -85,7 +91,11 @@ def differences(before: Gaussians, after: Gaussians, codings: Codings) -> list[D
 
 
 def opacity_of(logits: Array) -> Array:
-    """1 / (1 + exp(-logit)) in double, without overflow."""
+    """1 / (1 + exp(-logit)) in double, without overflow.
+
+    Args:
+        logits: (N,).
+    """
     z = np.exp(-np.abs(logits.astype(np.float64)))
     return np.asarray(np.where(logits >= 0, 1.0, z) / (1.0 + z))
 
@@ -97,7 +107,11 @@ def logit_of(opacity: Array) -> Array:
 
 
 def unit_quats(quats: Array) -> Array:
-    """(N, 4) in double, of length one; a zero one stands for no rotation."""
+    """(N, 4) in double, of length one; a zero one stands for no rotation.
+
+    Args:
+        quats: (N, 4), w first.
+    """
     q = quats.astype(np.float64)
     largest = np.abs(q).max(axis=1, keepdims=True, initial=0.0)
     q = np.where(largest > 0, q / np.where(largest > 0, largest, 1.0), [1.0, 0.0, 0.0, 0.0])

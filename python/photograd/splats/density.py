@@ -75,7 +75,13 @@ class Grad2dStatistics:
         return self
 
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
-        """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,)."""
+        """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,).
+
+        Args:
+            screen: (N, 2).
+            visible: (N,).
+            camera: of the picture.
+        """
         half = max(camera.width, camera.height) / 2
         self.total += half * np.linalg.norm(screen.astype(np.float64), axis=1)
         self.count += visible
@@ -127,14 +133,34 @@ class DensityControl(ABC):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """What becomes of the Gaussians before this step; None if nothing changes."""
+        """What becomes of the Gaussians before this step; None if nothing changes.
+
+        Args:
+            params: of the Gaussians, by group.
+            grad2d: positional gradients since the last change.
+            extent: of the scene, in meters.
+            step: of the fit.
+        """
 
     def add_priors(self, params: Params, gradients: dict[str, Array], *, extent: float) -> None:
-        """Add the gradient of what the strategy wants besides the photographs."""
+        """Add the gradient of what the strategy wants besides the photographs.
+
+        Args:
+            params: of the Gaussians, by group.
+            gradients: of the loss, changed in place.
+            extent: of the scene, in meters.
+        """
         del params, gradients, extent
 
     def explore(self, params: Params, *, extent: float, rate: float, step: int) -> None:
-        """Move Gaussians at random, in place, after a step; `rate` is that of the means, in m."""
+        """Move Gaussians at random, in place, after a step; `rate` is that of the means, in m.
+
+        Args:
+            params: of the Gaussians, by group.
+            extent: of the scene, in meters.
+            rate: learning rate of the means.
+            step: of the fit.
+        """
         del params, extent, rate, step
 
 
@@ -144,18 +170,33 @@ class NoControl(DensityControl):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """None."""
+        """None.
+
+        Args:
+            params: not used.
+            grad2d: not used.
+            extent: not used.
+            step: not used.
+        """
         del params, grad2d, extent, step
         return None
 
 
 def opacities(params: Params) -> Array:
-    """(N,) float64 in 0 .. 1, of the logits."""
+    """(N,) float64 in 0 .. 1, of the logits.
+
+    Args:
+        params: of the Gaussians, by group.
+    """
     return sigmoid(params["opacity_logits"].astype(np.float64))
 
 
 def logits(opacity: Array) -> Array:
-    """The inverse of the sigmoid, (N,) float64, finite for 0 and 1."""
+    """The inverse of the sigmoid, (N,) float64, finite for 0 and 1.
+
+    Args:
+        opacity: (N,) in 0 to 1.
+    """
     held = np.clip(opacity, 1e-7, 1 - 1e-7)
     return np.asarray(log(held) - log1p(-held))
 
@@ -163,7 +204,13 @@ def logits(opacity: Array) -> Array:
 def rebuilt(
     params: Params, kept: Array, added: Mapping[str, Array]
 ) -> tuple[dict[str, Array], RowMap]:
-    """The rows `kept` (M,) in their order, then those of `added`, which are fresh."""
+    """The rows `kept` (M,) in their order, then those of `added`, which are fresh.
+
+    Args:
+        params: of the Gaussians, by group.
+        kept: (M,) numbers of rows.
+        added: rows of each group.
+    """
     after: dict[str, Any] = {
         name: np.concatenate([array[kept], added[name].astype(array.dtype)])
         for name, array in params.items()

@@ -127,7 +127,13 @@ def write_gaussians(
 
 
 def codings_of(path: Path, gaussians: Gaussians, *, spz_version: int = 3) -> Codings:
-    """What the format that `write_gaussians` would choose keeps of these Gaussians."""
+    """What the format that `write_gaussians` would choose keeps of these Gaussians.
+
+    Args:
+        path: its suffix names the format.
+        gaussians: to be written.
+        spz_version: of .spz files.
+    """
     if path.suffix.lower() == ".splat":
         return splat_codings(gaussians)
     if path.suffix.lower() == ".spz":
@@ -136,7 +142,11 @@ def codings_of(path: Path, gaussians: Gaussians, *, spz_version: int = 3) -> Cod
 
 
 def holds_gaussians(path: Path) -> bool:
-    """Whether a name is one of a file of Gaussians; an archive of a fit is none."""
+    """Whether a name is one of a file of Gaussians; an archive of a fit is none.
+
+    Args:
+        path: of a file; its name decides, and the content of a .npz archive.
+    """
     suffix = path.suffix.lower()
     return is_point_npz(path) if suffix == ".npz" else suffix in SUFFIXES
 

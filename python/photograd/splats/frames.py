@@ -52,6 +52,9 @@ def half_turn(gaussians: Gaussians) -> Gaussians:
 
     Their axes turn too and are then reversed in y and z, which changes no Gaussian: the quaternion
     (w, x, y, z) becomes (w, x, -y, -z). A harmonic keeps its sign or changes it.
+
+    Args:
+        gaussians: in any frame.
     """
     flips = np.array([1, -1, -1], gaussians.means.dtype)
     turn = sh.rotation(np.diag([1.0, -1.0, -1.0]), gaussians.degree)
@@ -67,6 +70,10 @@ def half_turn(gaussians: Gaussians) -> Gaussians:
 
 def with_usual_up(gaussians: Gaussians, up: str) -> Gaussians:
     """Gaussians in whose frame `up` points up, rotated as a whole so that -y does.
+
+    Args:
+        gaussians: in any frame.
+        up: the axis, such as "+y".
 
     Raises:
         RangeError: no axis of that name.
@@ -125,7 +132,13 @@ class Presentation:
 
     @classmethod
     def of_fit(cls, up: str, background: Array | None, *, antialiased: bool) -> Presentation:
-        """Of fitted Gaussians: `background` (3,) is linear, as it was learned, or None."""
+        """Of fitted Gaussians: `background` (3,) is linear, as it was learned, or None.
+
+        Args:
+            up: the axis that points up, such as "+y".
+            background: (3,), or None.
+            antialiased: whether the low-pass keeps the light of each Gaussian.
+        """
         if background is None:
             return cls(up, None, antialiased)
         red, green, blue = srgb_encode(np.asarray(background, np.float64)).clip(0.0, 1.0).tolist()
@@ -180,6 +193,10 @@ def dropped(suffix: str, presentation: Presentation) -> list[str]:
     """Sentences on what a file whose name ends in `suffix` has no place for.
 
     Up is none of it: files of other formats have one axis up.
+
+    Args:
+        suffix: of the file's name.
+        presentation: of the Gaussians.
     """
     if suffix == ".ply":
         return []

@@ -75,7 +75,14 @@ class MarkovChain(DensityControl):
     def change(
         self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
-        """Faint rows become copies in place, new ones stand at the end; all copies are fresh."""
+        """Faint rows become copies in place, new ones stand at the end; all copies are fresh.
+
+        Args:
+            params: of the Gaussians, by group.
+            grad2d: not used.
+            extent: of the scene, in meters.
+            step: of the fit.
+        """
         del grad2d, extent
         if not self.schedule.due(step):
             return None
@@ -91,7 +98,13 @@ class MarkovChain(DensityControl):
         return _copied(params, chosen, targets)
 
     def add_priors(self, params: Params, gradients: dict[str, Array], *, extent: float) -> None:
-        """Add w a (1 - a) / N to d_logit and w s / (3 N extent) to d_log_scale."""
+        """Add w a (1 - a) / N to d_logit and w s / (3 N extent) to d_log_scale.
+
+        Args:
+            params: of the Gaussians, by group.
+            gradients: of the loss, changed in place.
+            extent: of the scene, in meters.
+        """
         alpha = opacities(params)
         scales = exp(params["log_scales"].astype(np.float64)) / extent
         d_logits = self.opacity_weight * alpha * (1 - alpha) / len(alpha)
@@ -103,6 +116,12 @@ class MarkovChain(DensityControl):
         """Add noise rate cov3d n sigmoid(100 (0.005 - a)) / extent^2 to each mean, n normal.
 
         Divided by the extent squared, the motion is the same in meters and in feet.
+
+        Args:
+            params: of the Gaussians, by group; the means are changed in place.
+            extent: of the scene, in meters.
+            rate: learning rate of the means, in m.
+            step: of the fit, for random numbers.
         """
         alpha = opacities(params)
         rows = np.flatnonzero(alpha < FAINT_ENOUGH)

@@ -106,6 +106,13 @@ class GaussianScene(Fittable):
         """`active_degree` None draws all harmonics.
 
         Raises RangeError for a bad extent or degree.
+
+        Args:
+            gaussians: all of one dtype.
+            extent: of the scene, in meters.
+            policy: options of the rendering.
+            control: of the number of Gaussians; None leaves it.
+            active_degree: highest degree of the harmonics that are drawn.
         """
         call = Arguments("GaussianScene")
         call.number("extent", extent, above=0)

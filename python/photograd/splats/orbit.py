@@ -29,6 +29,9 @@ def scene_box(gaussians: Gaussians) -> Array:
     """(2, 3) corners of what holds 96 % of the means along each axis, padded by 5 %; fitted scenes
     have strays. Means that are all in one place have a cube of the widest Gaussian around them.
 
+    Args:
+        gaussians: of a scene.
+
     Raises:
         RangeError: there are no Gaussians.
     """

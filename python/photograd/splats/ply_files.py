@@ -47,6 +47,9 @@ REST_COUNTS = {0: 1, 9: 4, 24: 9, 45: 16}  # number of f_rest properties: coeffi
 def read_gaussian_ply(path: Path) -> Gaussians:
     """Read Gaussians, raw, in float32; other properties (normals) are left out.
 
+    Args:
+        path: of the file.
+
     Raises:
         IoError: no file, a damaged one, one of points or of another layout, or a value that is no
             number (infinite opacities are, and mean opaque or absent).
@@ -79,6 +82,11 @@ def write_gaussian_ply(
 
     Reading the file gives the same float32 numbers. Normals, which some writers add, are left out.
     `presentation` goes into comments of the header.
+
+    Args:
+        path: of the file.
+        gaussians: to be written.
+        presentation: how they are shown.
 
     Raises:
         IoError: the file cannot be written.
@@ -138,12 +146,20 @@ _OTHERS = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
 
 def is_compressed(head: bytes) -> bool:
-    """Whether a .ply file that begins so has the properties of this format."""
+    """Whether a .ply file that begins so has the properties of this format.
+
+    Args:
+        head: the first bytes of the file.
+    """
     return _WORDS[0].encode() in head.partition(b"end_header")[0]
 
 
 def read_compressed_ply(path: Path, *, memory_limit: int | None = None) -> Gaussians:
     """Read Gaussians in float32. Opacities of 0 and 255 have infinite logits.
+
+    Args:
+        path: of the file.
+        memory_limit: bytes that may be taken; None takes what there is.
 
     Raises:
         IoError: no file, a damaged one, another layout, more than memory holds, or limits that are

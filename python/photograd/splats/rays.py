@@ -164,6 +164,10 @@ def render_backward(
     the rays and a count for each.
 
     Args:
+        context: of `render`.
+        d_color: (R, 3), or None.
+        d_opacity: (R,), or None.
+        d_depth: (R,), or None.
         rays: also dL/d origins and directions.
 
     Raises:

@@ -47,6 +47,10 @@ LOG_SCALES = (-87.0, 88.0)
 def read_gaussian_splat(path: Path, *, memory_limit: int | None = None) -> Gaussians:
     """Read Gaussians in float32, degree 0. Opacities of 0 and 255 have infinite logits.
 
+    Args:
+        path: of the file.
+        memory_limit: bytes that may be taken; None takes what there is.
+
     Raises:
         IoError: no file, an empty one, one of another length than whole records, more than memory
             holds, or positions and scales that are none.
@@ -78,6 +82,10 @@ def read_gaussian_splat(path: Path, *, memory_limit: int | None = None) -> Gauss
 def write_gaussian_splat(path: Path, gaussians: Gaussians) -> None:
     """Write Gaussians in their order, whole or not at all; harmonics above degree 0 are dropped.
 
+    Args:
+        path: of the file.
+        gaussians: to be written.
+
     Raises:
         IoError: none to write, since an empty file would be no .splat, or it cannot be written.
     """
@@ -98,6 +106,9 @@ def splat_codings(gaussians: Gaussians) -> Codings:
 
     A quaternion's components are off by 1/256 each, one near 1 by 1/128 since 256 is no byte: an
     error of length sqrt(3 + 4)/256.
+
+    Args:
+        gaussians: to be written.
     """
     largest = float(np.abs(gaussians.log_scales).max(initial=0.0, where=_finite(gaussians)))
     return {
@@ -127,6 +138,10 @@ _LEVELS = 1 << 10
 
 def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaussians, list[str]]:
     """Read points as Gaussians in float32, degree 0, and sentences for the log.
+
+    Args:
+        path: of the file.
+        memory_limit: bytes that may be taken; None takes what there is.
 
     Raises:
         IoError: no file, a damaged one, other arrays, more than memory holds, or positions that are
@@ -162,7 +177,11 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
 
 
 def is_point_npz(path: Path) -> bool:
-    """Whether a file is a .npz archive with the arrays of this format."""
+    """Whether a file is a .npz archive with the arrays of this format.
+
+    Args:
+        path: of a file.
+    """
     try:
         require_file(_NPZ_READER, path)
         with zipfile.ZipFile(path) as archive:
@@ -177,6 +196,9 @@ def neighbor_spacing(points: Array) -> Array:
     The curve visits the cells of a 1024^3 grid so that what is near on it is near in space. What is
     near in space may lie far apart on it, so that some of the sizes are too large; none is taken
     for larger than four medians. They serve for looking, not for measuring.
+
+    Args:
+        points: (N, 3).
     """
     n = len(points)
     extent = float(np.ptp(points, axis=0).max(initial=0.0))

@@ -85,7 +85,11 @@ class Gaussians:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     def astype(self, dtype: type[np.floating[Any]]) -> Gaussians:
-        """The same in float32 or float64."""
+        """The same in float32 or float64.
+
+        Args:
+            dtype: np.float32 or np.float64.
+        """
         return Gaussians(**{name: array.astype(dtype) for name, array in self.arrays().items()})
 
 
@@ -255,6 +259,12 @@ def render_backward(
     The order of splats and the pixels that cut-offs drop are held constant. Memory: 40 bytes
     (float32) for each pair of a splat and a tile of 16 x 16 pixels that it touches.
 
+    Args:
+        context: of `render`.
+        d_color: (H, W, 3), or None.
+        d_opacity: (H, W), or None.
+        d_depth: (H, W), or None.
+
     Raises:
         DtypeError, ShapeError: a cotangent of another kind than its output.
     """
@@ -277,7 +287,12 @@ def render_backward(
 
 
 def filled_cotangents(image: list[Array], given: Sequence[Array | None]) -> list[Array]:
-    """The cotangents of an image as the core takes them; None is zero."""
+    """The cotangents of an image as the core takes them; None is zero.
+
+    Args:
+        image: color, opacity and depth.
+        given: the cotangent of each, or None.
+    """
     return [
         np.zeros_like(array) if d is None else np.ascontiguousarray(d)
         for array, d in zip(image, given, strict=True)
@@ -289,6 +304,10 @@ def twist_gradient(d_camera_from_world: Array, camera_from_world: ArrayLike) -> 
     (3,).
 
     The motion (omega, v) takes [W | b] = camera_from_world to exp([omega]x) [W | b] + [0 | v].
+
+    Args:
+        d_camera_from_world: (3, 4) dL/d pose.
+        camera_from_world: (3, 4) or (4, 4).
     """
     rows = np.asarray(camera_from_world)[:3]
     # omega x row-vectors: the derivative with respect to omega_k pairs the rows i, j of a cyclic

@@ -64,6 +64,10 @@ def read_gaussian_spz(
     Opacities of 0 and 255 have infinite logits. What is up follows from the format; that a file
     does not say "antialiased" says nothing, since few programs set the flag.
 
+    Args:
+        path: of the file.
+        memory_limit: bytes that may be taken; None takes what there is.
+
     Raises:
         IoError: no file, a damaged one, another version than 2, 3 or 4, more than memory holds.
     """
@@ -111,6 +115,12 @@ def write_gaussian_spz(
     Harmonics keep all of their 8 bits; the format's own writer drops 3 and 4 of them, for smaller
     files. What lies outside of `spz_codings` is moved to the limit.
 
+    Args:
+        path: of the file.
+        gaussians: to be written.
+        version: of the format, 2, 3 or 4.
+        antialiased: the flag of the header.
+
     Raises:
         RangeError: another version than 2, 3 or 4.
         IoError: the file cannot be written, or version 4 without the package zstandard.
@@ -141,6 +151,10 @@ def spz_codings(gaussians: Gaussians, version: int = 3) -> Codings:
     Rotations of version 2: the error of x, y, z is e = sqrt(3)/255 long; w^2 is off by 2 e + e^2 at
     most, w by the root of that. Of the others: each component is off by d = sqrt(1/2)/1022, the
     largest, which is 1/2 at least and not smaller than they, by 3.02 d.
+
+    Args:
+        gaussians: to be written.
+        version: of the format.
     """
     bits = fractional_bits(gaussians)
     e, d = np.sqrt(3.0) / 255.0, np.sqrt(0.5) / 1022.0
@@ -157,7 +171,11 @@ def spz_codings(gaussians: Gaussians, version: int = 3) -> Codings:
 
 
 def fractional_bits(gaussians: Gaussians) -> int:
-    """Most bits, 12 at most, with which all positions stay inside of 24 bits with a sign."""
+    """Most bits, 12 at most, with which all positions stay inside of 24 bits with a sign.
+
+    Args:
+        gaussians: to be written.
+    """
     largest = float(np.abs(gaussians.means).max(initial=0.0))
     room = np.floor(np.log2(_LARGEST / largest)) if largest > 0 else MAX_BITS
     return int(np.clip(room, 0, MAX_BITS))

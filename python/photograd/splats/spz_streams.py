@@ -54,12 +54,23 @@ class SpzHeader:
 
 
 def refuse(path: Path, expected: str, got: object, remedy: str | None = None) -> IoError:
-    """The error of a file that is not what it should be, ready to be raised."""
+    """The error of a file that is not what it should be, ready to be raised.
+
+    Args:
+        path: of the file.
+        expected: what would have been read.
+        got: what stands there.
+        remedy: what can be done about it.
+    """
     return IoError(message(READER, f"{path}", expected, f"{got}", remedy))
 
 
 def read_header(path: Path, content: bytes) -> SpzHeader:
     """The header of a file in either envelope, without what follows.
+
+    Args:
+        path: of the file, for errors.
+        content: of the file.
 
     Raises:
         IoError: not an .spz file, another version, or values without meaning.
@@ -83,6 +94,11 @@ def read_header(path: Path, content: bytes) -> SpzHeader:
 
 def read_streams(path: Path, content: bytes, header: SpzHeader) -> dict[str, bytes]:
     """{name: bytes} of the streams, each as long as the header says.
+
+    Args:
+        path: of the file, for errors.
+        content: of the file.
+        header: of the file.
 
     Raises:
         IoError: truncated, damaged, or of other lengths.
@@ -108,7 +124,12 @@ def read_streams(path: Path, content: bytes, header: SpzHeader) -> dict[str, byt
 
 
 def packed(header: SpzHeader, streams: dict[str, bytes]) -> bytes:
-    """The bytes of a file, the same for the same input."""
+    """The bytes of a file, the same for the same input.
+
+    Args:
+        header: of the file.
+        streams: {name: bytes}.
+    """
     names = [name for name in STREAMS if name != "harmonics" or header.degree]
     fields = (MAGIC, header.version, header.count, header.degree, header.fractional_bits)
     if header.version != 4:
@@ -125,6 +146,11 @@ def packed(header: SpzHeader, streams: dict[str, bytes]) -> bytes:
 
 def extensions_of(path: Path, content: bytes, header: SpzHeader) -> list[str]:
     """Hexadecimal types of the extensions of a version 4 file, which we leave aside.
+
+    Args:
+        path: of the file, for errors.
+        content: of the file.
+        header: of the file.
 
     Raises:
         IoError: records that do not end where the table begins.

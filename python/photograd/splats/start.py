@@ -60,6 +60,14 @@ def start_gaussians(
     points if it has a hundred; else at `count` random points of the box (2, 3), where the
     photographs have alpha only those that no silhouette excludes.
 
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of random points.
+        degree: of the harmonics.
+        seed: of random points.
+        given: points and their display colors, or None.
+
     Raises:
         RangeError: `count` below 1, or a degree that splats do not have.
     """
@@ -83,6 +91,12 @@ def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussia
     """Round, faint Gaussians at points (N, 3) with scales (N,), of display colors (N, 3).
 
     In float32.
+
+    Args:
+        points: (N, 3).
+        size: (N,) in meters.
+        colors: (N, 3).
+        degree: of the harmonics.
 
     Raises:
         RangeError: a degree that splats do not have.
@@ -129,6 +143,12 @@ def random_points(
     """`count` points (N, 3) uniform in the box, or in the visual hull inside of it.
 
     Also the volume that they fill, in cubic meters, and a sentence on them.
+
+    Args:
+        capture: the photographs.
+        box: (2, 3) of the scene.
+        count: of points.
+        seed: of their choice.
     """
     silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
     carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
@@ -153,6 +173,11 @@ def mean_colors(views: Sequence[View], points: Array, *, max_views: int = 24) ->
     """(N, 3) display colors: the mean of the pixels that points (N, 3) land on; gray for none.
 
     Nothing is hidden by anything here, which is good enough to begin with.
+
+    Args:
+        views: the photographs.
+        points: (N, 3).
+        max_views: at most so many, evenly spaced.
     """
     total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
     for view in views[:: max(1, len(views) // max_views)]:
@@ -227,6 +252,10 @@ def scene_extent(capture: Capture, box: Array) -> float:
     """1.1 times the greatest distance of a camera from their mean, in meters [Kerbl2023].
 
     Cameras that all stand in one place say nothing: then half the diagonal of the box.
+
+    Args:
+        capture: whose cameras are asked.
+        box: (2, 3) of the scene.
     """
     positions = np.array([view.camera.position for view in capture.train])
     spread = float(np.linalg.norm(positions - positions.mean(axis=0), axis=1).max())

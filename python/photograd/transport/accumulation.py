@@ -50,6 +50,9 @@ class Accumulation:
     def empty(cls, height: int, width: int) -> Accumulation:
         """No samples yet.
 
+        Args:
+            height, width: of the picture, in pixels.
+
         Raises:
             RangeError: more pixels than there is memory for.
         """
@@ -108,6 +111,13 @@ class Accumulation:
     ) -> None:
         """Check a call that adds samples to these sums; its arguments are called so.
 
+        Args:
+            function: that was called, for errors.
+            shape: (H, W) that the sums must have.
+            count: samples to be added.
+            name: of the argument that is these sums.
+            many: of the argument that is the count.
+
         Raises:
             RangeError: a count below 1.
             ShapeError: sums of another shape than (H, W).
@@ -117,7 +127,11 @@ class Accumulation:
         call.array(name, self.radiance, (*shape, 3), finite=False)
 
     def check_finite(self, function: str) -> None:
-        """Raise Error that names the first pixel with a sum that is not finite."""
+        """Raise Error that names the first pixel with a sum that is not finite.
+
+        Args:
+            function: on whose behalf the error speaks.
+        """
         if not np.isfinite(self.radiance).all():
             row, column = np.argwhere(~np.isfinite(self.radiance))[0][:2]
             got = f"a value that is not, first in pixel ({column}, {row})"
@@ -125,6 +139,10 @@ class Accumulation:
 
     def save(self, path: Path, key: dict[str, Any]) -> None:
         """Write the sums and `key`, which says what they belong to; the file is replaced at once.
+
+        Args:
+            path: of the file.
+            key: plain values, as JSON has them.
 
         Raises:
             IoError: the file cannot be written.
@@ -137,6 +155,10 @@ class Accumulation:
 
 def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
     """The sums that `Accumulation.save` wrote for the same key.
+
+    Args:
+        path: of the file.
+        key: that the file must have.
 
     Raises:
         IoError: missing or damaged, or of another scene, seed or options.

@@ -37,7 +37,11 @@ BRUSHES = ("anisotropy", "anisotropic")
 
 
 def instances_of(meshes: Sequence[MeshShape]) -> tuple[Array, Array]:
-    """Mesh numbers (I,) int32 and world_from_object (I, 3, 4) float64 of all instances."""
+    """Mesh numbers (I,) int32 and world_from_object (I, 3, 4) float64 of all instances.
+
+    Args:
+        meshes: of the scene.
+    """
     numbers: list[int] = []
     matrices: list[Array] = []
     for number, mesh in enumerate(meshes):
@@ -52,6 +56,9 @@ def textures_of(
 ) -> tuple[list[Layout], list[list[Use]], list[BentNormals | None], list[bool]]:
     """Layouts of the textures; of each material what they scale, its normal map, and whether it is
     brushed: the first axis of its frame then runs along growing u.
+
+    Args:
+        scene: whose textures and materials are listed.
     """
     order = {name: number for number, name in enumerate(scene.textures)}
     layouts = [
@@ -68,20 +75,29 @@ def textures_of(
 
 
 def cutoffs_of(scene: Scene) -> list[float]:
-    """Of each material that is a mask; -1 for all others."""
+    """Of each material that is a mask; -1 for all others.
+
+    Args:
+        scene: whose materials are listed.
+    """
     cutoffs = [material.alpha_cutoff for material in scene.materials.values()]
     return [-1.0 if cutoff is None else cutoff for cutoff in cutoffs]
 
 
 def glows_of(scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int]]:
-    """Of each shape the number of the texture that scales its emission, and the first channel."""
+    """Of each of the `shapes` the texture of `scene` that scales its emission, and the channel."""
     order = {name: number for number, name in enumerate(scene.textures)}
     uses = [getattr(shape, "emission_texture", None) for shape in shapes]
     return [(-1, 0) if use is None else (order[use.texture], use.channel) for use in uses]
 
 
 def mean_emission(scene: Scene, shape: Shape) -> Array:
-    """Radiance (3,) of a shape, over its texture: how often it is asked as a light."""
+    """Radiance (3,) of a shape, over its texture: how often it is asked as a light.
+
+    Args:
+        scene: that has its texture.
+        shape: of the scene.
+    """
     use = getattr(shape, "emission_texture", None)
     if use is None:
         return shape.emission
@@ -116,6 +132,9 @@ def blocks_of(arguments: dict[str, Any]) -> dict[str, Array]:
 
     Those of cpp/photograd/scene/gradient.h: "parameters", "emission", "lights.0", "textures.0",
     "media.0", "densities.0" and so on.
+
+    Args:
+        arguments: what the core takes of the scene.
     """
     blocks = {name: arguments[name] for name in ("parameters", "emission")}
     blocks |= {f"lights.{i}": row[1] for i, row in enumerate(arguments["lights"])}
@@ -148,6 +167,10 @@ class PackedLight:
     def row(self, params: Mapping[str, Array], dtype: npt.DTypeLike) -> tuple[Any, ...]:
         """For the core: (name, parameters, constants), or a map's texels, rotation and sampler.
 
+        Args:
+            params: of the tracer.
+            dtype: of the computation.
+
         Raises:
             ShapeError: params of another shape than at the start.
         """
@@ -172,7 +195,11 @@ class PackedLight:
 
 
 def packed_lights(scene: Scene) -> list[PackedLight]:
-    """The environment, if there is one, and the lights of the list that have no surface."""
+    """The environment, if there is one, and the lights of the list that have no surface.
+
+    Args:
+        scene: whose lights are listed.
+    """
     found = [_dome(scene.environment)] if scene.environment is not None else []
     for i, light in enumerate(scene.lights):
         if isinstance(light, SURFACES):
@@ -190,7 +217,11 @@ def packed_lights(scene: Scene) -> list[PackedLight]:
 
 
 def light_shapes(scene: Scene) -> dict[str, Shape]:
-    """{name of the radiance among the params: the shape that emits it}; materials are unnamed."""
+    """{name of the radiance among the params: the shape that emits it}; materials are unnamed.
+
+    Args:
+        scene: whose lights are listed.
+    """
     return {
         f"lights.{i}.radiance": _shape(f"lights.{i}", light)
         for i, light in enumerate(scene.lights)

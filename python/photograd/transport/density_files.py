@@ -29,7 +29,11 @@ PLACED = (".vdb", *SUFFIXES)
 
 
 def is_placed(path: Path) -> bool:
-    """Whether a file of this name says where its voxels lie."""
+    """Whether a file of this name says where its voxels lie.
+
+    Args:
+        path: of the file.
+    """
     return path.name.lower().endswith(PLACED)
 
 

@@ -114,8 +114,20 @@ def add_derivative_samples(
 ) -> None:
     """Add the next `spp` samples to both sums, in place; arguments as for `derivative_image`.
 
+    Args:
+        tracer: of the scene.
+        picture: sums of the picture.
+        derivative: sums of the derivative, of as many samples.
+        along: name of a parameter, or {name: change}.
+        spp: samples a pixel.
+        seed: of all random numbers.
+        options: of the path tracer.
+        camera: None takes the scene's.
+
     Raises:
-        As `derivative_image`; ShapeError: sums of another size; RangeError: of other counts.
+        RangeError: as `derivative_image`, and for sums of other counts.
+        ShapeError: sums of another size.
+        Error: as `derivative_image`.
     """
     view = tracer.scene.camera if camera is None else camera
     for name, sums in (("picture", picture), ("derivative", derivative)):

@@ -29,7 +29,7 @@ TURNING = {
     "dispersive_glass": (("eta", "dispersion"), "dispersive_dielectric"),
 }
 """Of specular models: the parameters that turn their lobes, and the rough model of the same
-surface. tests/transport/test_incomplete.py finds both for every registered model."""
+surface; a test finds both for every registered model."""
 EXPECTED = "a parameter whose derivative is whole"
 
 
@@ -55,7 +55,14 @@ class WholeGradients(dict[str, Array]):
         names: Iterable[str],
         incomplete: Mapping[str, Missing],
     ) -> None:
-        """Keep what is whole of `names`, in their order; errors name the `function`."""
+        """Keep what is whole of `names`, in their order; errors name the `function`.
+
+        Args:
+            function: that returns them.
+            found: {name: derivative}.
+            names: of the parameters that are asked for.
+            incomplete: {name: what its derivative lacks}.
+        """
         super().__init__({name: found[name] for name in names if name not in incomplete})
         self._function, self._incomplete = function, dict(incomplete)
 
@@ -68,6 +75,9 @@ def incomplete_derivatives(scene: Scene) -> dict[str, Missing]:
     """{parameter: what its derivative lacks}, by the names in `PathTracer.params`.
 
     A texture counts as soon as one of the parameters that it scales does.
+
+    Args:
+        scene: whose materials and media are asked.
     """
     found: dict[str, Missing] = {}
     for name, material in scene.materials.items():
@@ -97,6 +107,12 @@ def require_whole(
 ) -> None:
     """Refuse the first of `names` that is among the incomplete.
 
+    Args:
+        function: that was called, for errors.
+        argument: with the names, for errors.
+        names: of parameters.
+        incomplete: {name: what its derivative lacks}.
+
     Raises:
         RangeError: with what is missing and the remedy.
     """
@@ -107,5 +123,9 @@ def require_whole(
 
 
 def changed_names(step: Mapping[str, Array]) -> list[str]:
-    """Parameters that a direction {name: change} moves at all."""
+    """Parameters that a direction {name: change} moves at all.
+
+    Args:
+        step: {name: change}.
+    """
     return [name for name, change in step.items() if np.any(change)]

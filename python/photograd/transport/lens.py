@@ -62,6 +62,9 @@ class Shutter:
     def motion(self, opening: Camera) -> tuple[FloatArray, FloatArray]:
         """Way (3,) in meters, and turn (3,), radians along its axis, both in the world.
 
+        Args:
+            opening: the camera when the shutter opens.
+
         Raises:
             RangeError: half a turn, whose axis nobody can tell.
         """

@@ -39,7 +39,14 @@ def check_media(
     media: Mapping[str, Medium],
     world: str | None,
 ) -> None:
-    """Raise SceneError for names that do not exist, and interiors that no light could enter."""
+    """Raise SceneError for names that do not exist, and interiors that no light could enter.
+
+    Args:
+        shapes: of the scene.
+        materials: of the scene.
+        media: of the scene.
+        world: name of the medium around everything, or None.
+    """
     for name in (BOUNDARY, VACUUM):
         if name in materials or name in media:
             expected = "another name, this one has a meaning of its own"
@@ -108,7 +115,13 @@ class PackedMedia:
     def __init__(
         self, media: Mapping[str, Medium], materials: Mapping[str, Material], world: str | None
     ) -> None:
-        """Of a scene that has been checked."""
+        """Of a scene that has been checked.
+
+        Args:
+            media: of the scene.
+            materials: of the scene.
+            world: name of the medium around everything, or None.
+        """
         self.media = media
         self._numbers = {name: number for number, name in enumerate(media)}
         self._materials = materials
@@ -152,7 +165,11 @@ class PackedMedia:
         return NOTHING if solid and is_closed(shape) else UNCHANGED
 
     def changes(self, step: Mapping[str, Array]) -> list[tuple[Any, ...]]:
-        """Rows as those of `rows`, float64, of how params change: any numbers of their shapes."""
+        """Rows as those of `rows`, float64, of how params change: any numbers of their shapes.
+
+        Args:
+            step: {name: change}.
+        """
         found = []
         for name, medium in self.media.items():
             parts = {key: step[f"media.{name}.{key}"] for key in medium.start}
@@ -165,6 +182,10 @@ class PackedMedia:
 
     def rows(self, params: Mapping[str, Array], dtype: npt.DTypeLike) -> list[tuple[Any, ...]]:
         """For the core: (phase function, parameters (P,), densities (X, Y, Z) or None, sigma_maj).
+
+        Args:
+            params: of the tracer.
+            dtype: of the computation.
 
         Raises:
             ShapeError: params of another shape than at the start.
@@ -188,7 +209,11 @@ class PackedMedia:
         return found
 
     def named(self, blocks: Mapping[str, Array]) -> dict[str, Array]:
-        """The derivatives in "media.I" and "densities.I", under the names of the params."""
+        """The derivatives of "media.I" and "densities.I", under the names of the params.
+
+        Args:
+            blocks: derivatives, under the names of blocks of the core.
+        """
         gradients: dict[str, Array] = {}
         for i, (name, medium) in enumerate(self.media.items()):
             row, first = blocks[f"media.{i}"], 0

@@ -60,7 +60,13 @@ class DensityGrid:
         self.largest("DensityGrid", "values", values)
 
     def largest(self, function: str, name: str, values: Array) -> float:
-        """The bound of these values (X, Y, Z); raises RangeError for what is no density."""
+        """The bound of these values (X, Y, Z); raises RangeError for what is no density.
+
+        Args:
+            function: on whose behalf the error speaks.
+            name: what it calls the values.
+            values: (X, Y, Z).
+        """
         most = float(Arguments(function).array(name, values, low=0).max())
         if self.majorant is None:
             return most
@@ -114,7 +120,13 @@ class Medium:
 
     @classmethod
     def of(cls, sigma_a: Any, sigma_s: Any, **more: Any) -> Medium:
-        """From coefficients of absorption and scattering, (3,) or a number each, in 1/m."""
+        """From coefficients of absorption and scattering, (3,) or a number each, in 1/m.
+
+        Args:
+            sigma_a: absorption.
+            sigma_s: scattering.
+            more: other fields of `Medium`.
+        """
         a, s = _color("sigma_a", sigma_a), _color("sigma_s", sigma_s)
         for name, value in (("sigma_a", a), ("sigma_s", s)):
             _check("Medium.of", name, value)
@@ -139,7 +151,13 @@ class Medium:
         return values
 
     def row(self, function: str, prefix: str, values: Mapping[str, Array]) -> Array:
-        """The parameters (P,) that the core packs; raises RangeError for what is no medium."""
+        """The parameters (P,) that the core packs; raises RangeError for what is no medium.
+
+        Args:
+            function: on whose behalf errors speak.
+            prefix: of names in errors.
+            values: {parameter: value}.
+        """
         parts = []
         for name in self.start:
             if name == "density":

@@ -28,7 +28,11 @@ def moves(shape: Shape) -> bool:
 
 
 def check_motion(shapes: Sequence[Shape]) -> None:
-    """Raise SceneError for lights that move."""
+    """Raise SceneError for lights that move.
+
+    Args:
+        shapes: of the scene.
+    """
     for shape in shapes:
         if moves(shape) and shape.emission.any():
             expected, remedy = "lights that stand still", "let it shine, or let it move"
@@ -48,9 +52,13 @@ def refuse_motion(function: str, shapes: Sequence[Shape]) -> None:
 def moved_on(shape: Shape, way: Array) -> Shape:
     """A mesh or a sphere that `way` (4, 4) moves, in the world, while the shutter is open.
 
+    Args:
+        shape: when the shutter opens.
+        way: (4, 4) in the world.
+
     Raises:
         SceneError: a sphere that would turn or grow, or a signed distance function.
-        As `MeshShape`.
+        RangeError, SceneError: as `MeshShape`.
     """
     if isinstance(shape, MeshShape):
         starts = shape.instances or (np.eye(4),)
@@ -71,6 +79,10 @@ def closing_arrays(
     """World_from_object (I, 3, 4) float64 and spheres (K, 4) float32 when the shutter closes.
 
     None where no mesh, or no sphere, moves.
+
+    Args:
+        meshes: of the scene.
+        spheres: of the scene.
     """
     matrices = [
         instance[:3]

@@ -66,7 +66,15 @@ class OcclusionBake:
         radius: float = np.inf,
         seed: int,
     ) -> None:
-        """Find the texels; arguments and errors as `bake_ambient_occlusion`."""
+        """Find the texels; arguments and errors as `bake_ambient_occlusion`.
+
+        Args:
+            scene: that occludes.
+            shape: name of the mesh.
+            resolution: texels along both edges, or (height, width).
+            radius: meters beyond which nothing occludes.
+            seed: of all random numbers.
+        """
         height, width = (resolution, resolution) if isinstance(resolution, int) else resolution
         if min(height, width) < 1:
             raise _wrong("resolution", "at least 1 texel along each axis", resolution)
@@ -176,6 +184,10 @@ def continued(values: Array, known: Array) -> Array:
     """Values (H, W) where `known`; elsewhere, ring by ring, the mean of neighbors that are.
 
     Beyond `MARGIN` rings it is the mean of all.
+
+    Args:
+        values: (H, W).
+        known: (H, W).
     """
     found, done = np.where(known, values, 0.0), known.copy()
     for _ in range(MARGIN):

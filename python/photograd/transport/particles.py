@@ -45,7 +45,11 @@ class ParticleOptions:
         require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int]:
-        """As the core takes them."""
+        """As the core takes them.
+
+        Args:
+            seed: of all random numbers.
+        """
         late = NEVER if self.roulette_from is None else self.roulette_from
         return self.max_depth, late, seed
 
@@ -168,6 +172,12 @@ class Emitted:
 def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0) -> Emitted:
     """The particles that `trace_light` follows, `first` to `first + count - 1`.
 
+    Args:
+        tracer: of the scene.
+        count: of particles.
+        seed: of all random numbers.
+        first: number of the first particle.
+
     Raises:
         RangeError: count below 1, or a scene without lights.
         SceneError: as `trace_light`.
@@ -182,6 +192,10 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
 
 def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     """The scene as the core's functions take it that have no camera.
+
+    Args:
+        function: on whose behalf the error speaks.
+        tracer: of the scene.
 
     Raises:
         SceneError: shapes that move.
@@ -267,6 +281,12 @@ class PhotonMap:
         is not specular; all the light there is read from the map. Light that media scatter is path
         traced.
 
+        Args:
+            sums: of the same seed and options, or empty.
+            spp: samples a pixel.
+            seed: of all random numbers.
+            options: of the path tracer.
+
         Raises:
             RangeError: spp below 1.
             ShapeError: sums of another size than the picture.
@@ -287,7 +307,7 @@ class PhotonMap:
         sums.check_finite("PhotonMap.add_samples")
 
     def render(self, *, spp: int, seed: int, options: PathOptions = DEFAULTS) -> Accumulation:
-        """A picture of `spp` samples a pixel; arguments and errors as `add_samples`."""
+        """A picture of `spp` samples a pixel; `seed`, `options` and errors as of `add_samples`."""
         view = self.tracer.scene.camera
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options)

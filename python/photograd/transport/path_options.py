@@ -51,7 +51,11 @@ class PathOptions:
         require_bounds(self, "roulette_from", low=0)
 
     def numbers(self, seed: int) -> tuple[int, int, int, int, int, int]:
-        """As the core takes them."""
+        """As the core takes them.
+
+        Args:
+            seed: of all random numbers.
+        """
         late = NEVER if self.roulette_from is None else self.roulette_from
         strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
         sampler = SAMPLERS.index(self.sampler)

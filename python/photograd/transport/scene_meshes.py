@@ -35,6 +35,9 @@ from photograd.types import Array
 def camera_of_file(node: Node) -> Camera:
     """The camera that a table [camera] with a `file` names: its pose and vertical field of view.
 
+    Args:
+        node: the table.
+
     Raises:
         SceneError: no such file, or no such camera in it.
     """
@@ -57,6 +60,11 @@ def camera_of_file(node: Node) -> Camera:
 def lights_of(node: Node, model: ModelFile, instances: Sequence[Array]) -> list[Light]:
     """The lights of a model at each instance (4, 4), if a table of kind "mesh" wants them.
 
+    Args:
+        node: the table.
+        model: what its file holds.
+        instances: world_from_object of the model.
+
     Raises:
         SceneError: a model that moves.
     """
@@ -72,7 +80,12 @@ def lights_of(node: Node, model: ModelFile, instances: Sequence[Array]) -> list[
 
 
 def placed_light(light: Light, world_from_object: Array) -> Light:
-    """A light of a mesh file, moved and turned; no scale changes what it sends."""
+    """A light of a mesh file, moved and turned; no scale changes what it sends.
+
+    Args:
+        light: of the file.
+        world_from_object: (4, 4).
+    """
 
     def at(position: Any) -> Array:
         moved: Array = world_from_object[:3, :3] @ np.asarray(position) + world_from_object[:3, 3]
@@ -94,7 +107,11 @@ def placed_light(light: Light, world_from_object: Array) -> Light:
 
 
 def textures_in(root: Node) -> dict[str, Texture]:
-    """The tables [textures.NAME] of a scene file."""
+    """The tables [textures.NAME] of a scene file.
+
+    Args:
+        root: of the scene file.
+    """
     if not root.has("textures"):
         return {}
     tables = root.table("textures")
@@ -111,7 +128,11 @@ def _texture(node: Node) -> Texture:
 
 
 def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
-    """`textures` and `normal_map` of a table [materials.NAME]."""
+    """`textures` and `normal_map` of a table [materials.NAME].
+
+    Args:
+        node: the table.
+    """
     uses: dict[str, TextureUse] = {}
     if node.has("textures"):
         table = node.table("textures")
@@ -123,7 +144,12 @@ def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
 
 
 def texture_use(node: Node, key: str) -> TextureUse:
-    """A texture's name, or its name and a channel."""
+    """A texture's name, or its name and a channel.
+
+    Args:
+        node: the table.
+        key: of the value.
+    """
     found = node.value(key)
     name, channel = found if isinstance(found, list) and len(found) == 2 else (found, 0)
     if not isinstance(name, str) or type(channel) is not int:
@@ -141,7 +167,11 @@ class ImportedMeshes:
     lights: list[Light] = field(default_factory=list)
 
     def update(self, other: ImportedMeshes) -> None:
-        """Add what another file brings."""
+        """Add what another file brings.
+
+        Args:
+            other: what is added.
+        """
         self.materials.update(other.materials)
         self.textures.update(other.textures)
         self.media.update(other.media)
@@ -155,6 +185,12 @@ def mesh_shapes(
 
     Names of the file get the shape's name and a slash in front. Emission is the file's where the
     table has none.
+
+    Args:
+        node: the table.
+        name: of the shape.
+        material: its name; None takes those of the file.
+        emission: (3,) radiance, or None.
     """
     path = node.path.parent / node.text("file")
     inner = matrix_of(node)
@@ -232,7 +268,11 @@ def _renamed(model: ModelFile, name: str, looked_up: Filter | None) -> ImportedM
 
 
 def matrix_of(node: Node) -> Array:
-    """(4, 4): scale, then rotate about x, y and z, then translate."""
+    """(4, 4): scale, then rotate about x, y and z, then translate.
+
+    Args:
+        node: a table with `scale`, `rotate` and `translate`.
+    """
     matrix = np.eye(4)
     if node.has("scale"):
         found = node.value("scale")

@@ -78,7 +78,14 @@ class Node:
     def __init__(
         self, path: Path, data: Mapping[str, Any], keys: KeyPath, lines: Mapping[KeyPath, int]
     ) -> None:
-        """A table at `keys` in the file at `path`; `lines` are those of `key_lines`."""
+        """A table at `keys` in the file at `path`; `lines` are those of `key_lines`.
+
+        Args:
+            path: of the file.
+            data: what the table holds.
+            keys: of the table, from the root.
+            lines: {keys: line}.
+        """
         self.path, self.data, self.keys, self._lines = path, data, keys, lines
         self._asked: set[str] = set()
 
@@ -95,7 +102,14 @@ class Node:
     def wrong(
         self, key: str, expected: object, got: object, remedy: str | None = None
     ) -> SceneError:
-        """The error that a value is not what was expected."""
+        """The error that a value is not what was expected.
+
+        Args:
+            key: of the value.
+            expected: what would have been accepted.
+            got: what stands there.
+            remedy: what can be done about it.
+        """
         name = ".".join(str(part) for part in (*self.keys, key))
         where = f"line {self.line(key)}: {name}"
         return SceneError(message(f"read_scene: {self.path}", where, expected, got, remedy))
@@ -119,7 +133,12 @@ class Node:
         return key in self.data
 
     def value(self, key: str, default: Any = None) -> Any:
-        """Whatever stands there; SceneError if nothing does and there is no default."""
+        """Whatever stands there; SceneError if nothing does and there is no default.
+
+        Args:
+            key: of the value.
+            default: if it is absent.
+        """
         self._asked.add(key)
         if key in self.data:
             return self.data[key]
@@ -129,7 +148,11 @@ class Node:
         return default
 
     def table(self, key: str) -> Node:
-        """The table of this name."""
+        """The table of this name.
+
+        Args:
+            key: of the table.
+        """
         found = self.value(key)
         if not isinstance(found, dict):
             raise self.wrong(key, "a table", type(found).__name__)
@@ -146,14 +169,24 @@ class Node:
         ]
 
     def text(self, key: str, default: str | None = None) -> str:
-        """A string."""
+        """A string.
+
+        Args:
+            key: of the value.
+            default: if it is absent; None makes that an error.
+        """
         found = self.value(key, default)
         if not isinstance(found, str):
             raise self.wrong(key, "a string", found)
         return found
 
     def choice(self, key: str, known: Iterable[Name]) -> Name:
-        """One of the known names."""
+        """One of the known names.
+
+        Args:
+            key: of the value.
+            known: the names.
+        """
         names = list(known)
         found = self.text(key)
         for name in names:
@@ -162,21 +195,36 @@ class Node:
         raise self.wrong(key, f"one of {', '.join(names)}", found, choose_from(found, names))
 
     def flag(self, key: str) -> bool:
-        """A truth value; false if absent."""
+        """A truth value; false if absent.
+
+        Args:
+            key: of the value.
+        """
         found = self.value(key, False)
         if not isinstance(found, bool):
             raise self.wrong(key, "true or false", found)
         return found
 
     def number(self, key: str, default: float | None = None) -> float:
-        """A finite number."""
+        """A finite number.
+
+        Args:
+            key: of the value.
+            default: if it is absent; None makes that an error.
+        """
         found = self.value(key, default)
         if not _is_number(found):
             raise self.wrong(key, "a finite number", found, _too_large(found))
         return float(found)
 
     def numbers(self, key: str, count: int, default: list[float] | None = None) -> list[float]:
-        """A list of finite numbers."""
+        """A list of finite numbers.
+
+        Args:
+            key: of the value.
+            count: of the numbers.
+            default: if it is absent; None makes that an error.
+        """
         found = self.value(key, default)
         if not isinstance(found, list) or len(found) != count or not all(map(_is_number, found)):
             raise self.wrong(key, f"{count} finite numbers", found, _too_large(found))
@@ -192,7 +240,12 @@ class Node:
         return int(width), int(height)
 
     def color(self, key: str, default: list[float] | None = None) -> list[float]:
-        """Three numbers, or one for all three, none negative."""
+        """Three numbers, or one for all three, none negative.
+
+        Args:
+            key: of the value.
+            default: if it is absent; None makes that an error.
+        """
         found = self.value(key, default)
         entries = [found] * 3 if _is_number(found) else found
         if (
@@ -205,7 +258,12 @@ class Node:
         return [float(entry) for entry in entries]
 
     def rows(self, key: str, kind: type[int] | type[float]) -> Any:
-        """An array of rows of three numbers, (N, 3)."""
+        """An array of rows of three numbers, (N, 3).
+
+        Args:
+            key: of the value.
+            kind: int or float.
+        """
         found = self.value(key)
         whole = kind is int
         good = isinstance(found, list) and all(

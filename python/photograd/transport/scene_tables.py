@@ -25,6 +25,9 @@ from photograd.transport.shapes import Shape
 def light_of(node: Node) -> Light:
     """The light that a table describes.
 
+    Args:
+        node: a table of [[lights]].
+
     Raises:
         SceneError: with line and key, whatever is wrong with it.
     """
@@ -95,6 +98,9 @@ KINDS: dict[str, Callable[[Node], Light]] = {
 def media_in(root: Node) -> tuple[dict[str, Medium], str | None]:
     """The media of a scene file, and the name of the world's.
 
+    Args:
+        root: of the scene file.
+
     Raises:
         SceneError: with line and key, whatever is wrong with them.
     """
@@ -105,7 +111,13 @@ def media_in(root: Node) -> tuple[dict[str, Medium], str | None]:
 
 
 def filled(node: Node, media: dict[str, Medium], shapes: list[Shape]) -> list[Shape]:
-    """The shapes of a table with its `interior`, if it names one."""
+    """The shapes of a table with its `interior`, if it names one.
+
+    Args:
+        node: the table of the shapes.
+        media: by name.
+        shapes: without an interior.
+    """
     if not node.has("interior"):
         return shapes
     interior = node.choice("interior", (*media, VACUUM))

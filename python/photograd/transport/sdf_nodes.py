@@ -18,7 +18,11 @@ COMBINATIONS = ("union", "intersection", "difference", "smooth_union", "rounded"
 
 
 def bodies_in(root: Node) -> dict[str, Shape]:
-    """The tables [sdfs.NAME] of a scene file."""
+    """The tables [sdfs.NAME] of a scene file.
+
+    Args:
+        root: of the scene file.
+    """
     if not root.has("sdfs"):
         return {}
     tables = root.table("sdfs")
@@ -131,7 +135,11 @@ def _placed(node: Node, shape: Shape) -> Shape:
 
 
 def quaternion_of(degrees: list[float]) -> list[float]:
-    """(w, x, y, z) of turns about x, then y, then z."""
+    """(w, x, y, z) of turns about x, then y, then z.
+
+    Args:
+        degrees: about x, y and z.
+    """
     total = np.array([1.0, 0.0, 0.0, 0.0])
     for axis, angle in enumerate(np.radians(degrees)):
         w, v = np.cos(angle / 2), np.zeros(3)
@@ -144,6 +152,10 @@ def quaternion_of(degrees: list[float]) -> list[float]:
 
 def body_of(node: Node, bodies: dict[str, Shape]) -> Shape:
     """The body that a table of kind "sdf" names.
+
+    Args:
+        node: the table.
+        bodies: by name.
 
     Raises:
         SceneError: none of this name, or emission; names the line and the key.

@@ -21,6 +21,10 @@ FLAT = 1e-9
 def checked_instance(name: str, matrix: Any) -> Array:
     """World_from_object (4, 4) float64 of an instance of the shape `name`.
 
+    Args:
+        name: of the shape.
+        matrix: (4, 4).
+
     Raises:
         ShapeError: another shape.
         RangeError: numbers that are not finite, a determinant that is not positive.
@@ -39,6 +43,11 @@ def checked_closing_instances(
     name: str, instances: Sequence[Array], closing: Sequence[Any]
 ) -> tuple[Array, ...]:
     """World_from_object (4, 4) of each instance when the shutter closes.
+
+    Args:
+        name: of the shape.
+        instances: world_from_object when it opens.
+        closing: (4, 4) of each.
 
     Raises:
         ShapeError: another number of them than of instances, or what `checked_instance` refuses.
@@ -74,7 +83,13 @@ def _least_volume(a: Array, b: Array) -> float:
 
 
 def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:
-    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped."""
+    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped.
+
+    Args:
+        name: of the shape.
+        vertices: (V, 3).
+        faces: (F, 3).
+    """
     finite = np.asarray(np.isfinite(vertices).all(axis=1))
     sound = faces[finite[faces].all(axis=1)] if len(faces) else faces
     vertices = np.where(finite[:, None], vertices, np.float32(0))
@@ -91,6 +106,11 @@ def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, A
 def checked_color(function: str, argument: str, value: Any) -> Array:
     """(3,) float64, a copy.
 
+    Args:
+        function: on whose behalf errors speak.
+        argument: what they call the value.
+        value: three numbers.
+
     Raises:
         ShapeError: not three numbers.
         RangeError: numbers that are negative or not finite.
@@ -103,6 +123,11 @@ def check_range(model: str, parameter: ModelParameter, value: Any) -> None:
 
     Derivatives and searches may step beyond; what somebody writes down there is a mistake, and
     draws negative or growing light. Other ranges, as of indices and exponents, say what is usual.
+
+    Args:
+        model: of reflectance.
+        parameter: of the model.
+        value: one number or three.
 
     Raises:
         RangeError: outside of the range.

@@ -68,6 +68,13 @@ def dipole_backward(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """dL/dradius, dL/dsigma_s, dL/dsigma_a and dL/deta of `dipole`, for dL/dR.
 
+    Args:
+        radius: r, in meters.
+        sigma_s: reduced scattering, in 1/m.
+        sigma_a: absorption, in 1/m.
+        eta: relative index of refraction.
+        d_R: dL/dR.
+
     Raises:
         RangeError, ShapeError: as `dipole`, or d_R of another shape than its result.
     """
@@ -84,6 +91,11 @@ def dipole_albedo(sigma_s: ArrayLike, sigma_a: ArrayLike, eta: ArrayLike = 1.0) 
 
     Of a refracting surface that is the part of what has entered; the mirrored part is apart.
 
+    Args:
+        sigma_s: reduced scattering, in 1/m.
+        sigma_a: absorption, in 1/m.
+        eta: relative index of refraction.
+
     Raises:
         RangeError, ShapeError: as `dipole`.
     """
@@ -95,6 +107,12 @@ def dipole_albedo_backward(
     sigma_s: ArrayLike, sigma_a: ArrayLike, eta: ArrayLike, d_albedo: ArrayLike
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """dL/dsigma_s, dL/dsigma_a and dL/deta of `dipole_albedo`, for dL/dalbedo.
+
+    Args:
+        sigma_s: reduced scattering, in 1/m.
+        sigma_a: absorption, in 1/m.
+        eta: relative index of refraction.
+        d_albedo: dL/dalbedo.
 
     Raises:
         RangeError: as `dipole`, or sigma_a of 0, where the albedo falls infinitely fast with it.
@@ -145,6 +163,13 @@ def normalized_diffusion_backward(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """dL/dradius, dL/dalbedo and dL/dmean_free_path of `normalized_diffusion`, for dL/dR.
 
+    Args:
+        radius: r, in meters.
+        albedo: of the surface.
+        mean_free_path: in meters.
+        d_R: dL/dR.
+        fit: as of `normalized_diffusion`.
+
     Raises:
         RangeError, ShapeError: as `normalized_diffusion`, or d_R of another shape than its result.
     """
@@ -165,6 +190,12 @@ def diffusion_cdf(
 ) -> FloatArray:
     """The part of the light that leaves within `radius`, of what leaves at all; see
     `normalized_diffusion`.
+
+    Args:
+        radius: r, in meters.
+        albedo: of the surface.
+        mean_free_path: in meters.
+        fit: as of `normalized_diffusion`.
     """
     rows, shape, _ = _rows(
         "diffusion_cdf", radius=radius, albedo=albedo, mean_free_path=mean_free_path
@@ -179,7 +210,15 @@ def diffusion_cdf_backward(
     d_cdf: ArrayLike,
     fit: DiffusionFit = "searchlight",
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """dL/dradius, dL/dalbedo and dL/dmean_free_path of `diffusion_cdf`, for dL/dcdf."""
+    """dL/dradius, dL/dalbedo and dL/dmean_free_path of `diffusion_cdf`, for dL/dcdf.
+
+    Args:
+        radius: r, in meters.
+        albedo: of the surface.
+        mean_free_path: in meters.
+        d_cdf: dL/d of the part.
+        fit: as of `normalized_diffusion`.
+    """
     name = "diffusion_cdf_backward"
     rows, shape, shapes = _rows(name, radius=radius, albedo=albedo, mean_free_path=mean_free_path)
     d_rows = np.zeros_like(rows)
@@ -215,7 +254,15 @@ def sample_radius_backward(
     d_radius: ArrayLike,
     fit: DiffusionFit = "searchlight",
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """dL/du, dL/dalbedo and dL/dmean_free_path of `sample_radius`, for dL/dradius."""
+    """dL/du, dL/dalbedo and dL/dmean_free_path of `sample_radius`, for dL/dradius.
+
+    Args:
+        u: in 0 to 1.
+        albedo: of the surface.
+        mean_free_path: in meters.
+        d_radius: dL/dradius.
+        fit: as of `normalized_diffusion`.
+    """
     name = "sample_radius_backward"
     rows, shape, shapes = _rows(name, u=u, albedo=albedo, mean_free_path=mean_free_path)
     d_rows = np.zeros_like(rows)

@@ -103,7 +103,13 @@ class NormalMap:
     def from_image(
         cls, image: Array, scale: float = 1.0, wrap: Wrap = ("repeat", "repeat")
     ) -> NormalMap:
-        """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt."""
+        """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt.
+
+        Args:
+            image: (H, W, C).
+            scale: factor on x and y of the normals.
+            wrap: along u and v.
+        """
         values = 2 * np.asarray(image, np.float32)[..., :3] - 1
         return cls(values * np.array([scale, scale, 1], np.float32), wrap)
 
@@ -135,6 +141,9 @@ class OcclusionMap:
 
     def at(self, uv: Array) -> Array:
         """The factor (N,) of ambient light at texture coordinates (N, 2), bilinear, float32.
+
+        Args:
+            uv: (N, 2).
 
         Raises:
             ShapeError, RangeError: as `photograd.textures.sample`.
@@ -178,7 +187,11 @@ def read_texture(
 
 
 def decode(color: Array) -> Array:
-    """Display-encoded sRGB as linear float32."""
+    """Display-encoded sRGB as linear float32.
+
+    Args:
+        color: (..., C) display values.
+    """
     encoded = np.ravel(color)
     linear = np.empty(encoded.shape, np.float32)
     for start in range(0, encoded.size, 1 << 16):  # in double, but never all of it

@@ -1,7 +1,6 @@
 """Path tracing of a scene, and the derivatives of its picture by everything that is a number.
 
-The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and
-cpp/photograd/render/path/adjoint.h (what they carry, and its derivatives).
+The mathematics is in cpp/photograd/render/path/tracer.h and cpp/photograd/render/path/adjoint.h.
 """
 
 from __future__ import annotations
@@ -183,7 +182,8 @@ class PathTracer:
                 nothing to `sums`, and `hits` counts the others: `hits / sums.count` is alpha.
 
         Raises:
-            As `render`; ShapeError: sums or hits of another size.
+            RangeError, Error: as `render`.
+        ShapeError: sums or hits of another size.
         """
         view = self.scene.camera if camera is None else camera
         sums.check_call("add_samples", (view.height, view.width), spp)
@@ -253,7 +253,7 @@ class PathTracer:
         )
 
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
-        """What an adjoint of the core adds to zeros, by names of `params`, for a `function`."""
+        """What `backward` of the core makes of `view` and `given`, by name, for a `function`."""
         arguments = self._arguments(view)
         gradient = {name: np.zeros_like(value) for name, value in blocks_of(arguments).items()}
         backward(**arguments, **given, gradient=gradient)
@@ -282,6 +282,12 @@ class PathTracer:
         A sample is 1 where the scene's camera sees nothing, or nothing lies within `radius` meters
         of what it sees in one direction, drawn in proportion to the cosine; otherwise 0.
 
+        Args:
+            sums: of the same seed and radius, or empty.
+            spp: samples a pixel.
+            seed: of all random numbers.
+            radius: in meters.
+
         Raises:
             RangeError: spp below 1, or a radius that is not positive.
             SceneError: shapes that move.
@@ -301,7 +307,7 @@ class PathTracer:
     ) -> list[dict[str, Any]]:
         """One path of the scene's camera, a dictionary a vertex: what was met, asked and chosen.
 
-        `pixel` is row * width + column. In float64, whatever the tracer's dtype.
+        It is `sample` of `pixel`, row * width + column, with `seed` and `options`, in float64.
         """
         arguments = self.wide_arguments()
         found: list[dict[str, Any]] = _core.trace_path(
@@ -337,7 +343,7 @@ class PathTracer:
         return {**arguments, **self._wide(given), "media": self._media.rows(given, np.float64)}
 
     def wide_changes(self, step: dict[str, Array]) -> dict[str, Any]:
-        """What of `wide_arguments` is numbers, of how all parameters change."""
+        """What of `wide_arguments` is numbers, for a `step` {name: change} of all parameters."""
         return {**self._wide(step), "media": self._media.changes(step)}
 
     def _wide(self, params: dict[str, Array]) -> dict[str, Any]:

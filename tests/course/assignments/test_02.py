@@ -197,9 +197,9 @@ def test_malformed_inputs_are_named(said: str) -> None:
 
 
 HINTS = {
-    "a stack of your own": ("02.4.chain", "order_recursive"),
+    "an explicit stack": ("02.4.chain", "order_recursive"),
     "marks in a list": ("02.4.chain", "order_list_of_seen"),
-    "too early": ("02.4.order", "order_breadth_first"),
+    "when it is popped": ("02.4.order", "order_breadth_first"),
 }
 
 
@@ -225,9 +225,9 @@ def test_moving_x_in_place_is_not_taken_for_another_mistake() -> None:
     text = apply_mutant(FOLDER, "check_moves_x")
     table = json.loads((FOLDER / "hints.json").read_text("utf-8"))
     said = {each.id: each.hint for each in judge(FOLDER, text) if each.task == "02.6"}
-    assert "You move x itself" in said["02.6.rejects"]
-    assert not any("divide by the length" in hint for hint in said.values())
-    assert any("divide by the length" in hint for hint in table.values())
+    assert "You change x itself" in said["02.6.rejects"]
+    assert not any("divide by the norm" in hint for hint in said.values())
+    assert any("divide by the norm" in hint for hint in table.values())
     # Differences that are right, in an x that is not put back.
     first = text.index("        step = eps * max")
     last = text.index("    error = float")
@@ -245,7 +245,7 @@ def test_the_exploration_runs_with_a_finished_engine(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert float(re.search(r"grad_check: (\S+)", done.stdout)[1]) < 1e-6
-    before, after = re.search(r"misfit (\S+) -> (\S+)", done.stdout).groups()
+    before, after = re.search(r"loss (\S+) -> (\S+)", done.stdout).groups()
     assert float(after) < float(before) / 20
     assert (tmp_path / "explore_picture.png").exists()
     assert (tmp_path / "explore_network.png").exists()

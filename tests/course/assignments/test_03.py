@@ -174,7 +174,7 @@ def test_the_exploration_runs_and_says_what_it_did(
     order.extend(options)
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
-    assert f"picture: mine.png, {said}" in ran.stdout
+    assert f"image: mine.png, {said}" in ran.stdout
     assert "core" in ran.stdout
     assert "the smallest eigenvalue is 1/" in ran.stdout
     assert (tmp_path / "recovered.png").stat().st_size > 5_000

@@ -164,11 +164,11 @@ def test_a_wrong_mean_is_named_by_the_mistake_that_has_it(checks) -> None:
     text = text.replace(times, f"{times}\n        radiance[live] += beta * light")
     hints = {each.id: each.hint for each in judge(FOLDER, text, tasks=("07.5",))}
     for name in ("integral", "corner", "furnace"):
-        assert "beta is multiplied before direct light" in hints[f"07.5.{name}"]
+        assert "beta is updated before direct light" in hints[f"07.5.{name}"]
 
 
 def test_predictions_and_diagnoses_come_true(checks) -> None:
-    # Predictions and d2 are facts of Figures 2, 4 and 5. d1: lamps counted twice, by depth.
+    # Predictions and d2 are facts of Figures 2, 4 and 5. d1: lights counted twice, by depth.
     twice, rng = loaded(apply_mutant(FOLDER, "trace_double_emission")), np.random.default_rng(13)
     scene = checks.scene_of(checks.cube(emission=1.0, base_color=0.5))
     d = rng.normal(size=(2000, 3))
@@ -256,7 +256,7 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert float(done.stdout.split("your picture is ")[1].split("%")[0]) < 10
+    assert float(done.stdout.split("your image is ")[1].split("%")[0]) < 10
     assert float(done.stdout.split("gradient ")[1].split("%")[0]) < 40
     assert "core" in done.stdout
     assert (tmp_path / "traced.png").stat().st_size > 5_000

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.assignment.checks_file import load_beside
+from photograd_course.assignment.load import load_beside
 from photograd_course.build.public import kit_files
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Status
@@ -254,10 +254,10 @@ def test_the_exploration_runs_with_and_without_a_capture(tmp_path: Path) -> None
     for picture in ("recovery.png", "capture.png"):
         with Image.open(tmp_path / picture) as image:
             assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
-    new = float(done.stdout.split("photographs, ")[1].split(" dB on new views")[0])
+    new = float(done.stdout.split("photographs, ")[1].split(" dB on held-out views")[0])
     fog = float(done.stdout.split("fog has ")[1].split(" dB")[0])
     assert new > fog + 3
-    kept_back = float(done.stdout.split(" dB on the one kept back")[0].rsplit(maxsplit=1)[1])
+    kept_back = float(done.stdout.split(" dB on the held-out one")[0].rsplit(maxsplit=1)[1])
     assert kept_back > 15  # black has 10
     if "core not installed" not in done.stdout:
         assert float(done.stdout.split("its derivative is ")[1].split("%")[0]) < 5

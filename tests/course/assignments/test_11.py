@@ -213,6 +213,6 @@ def test_the_exploration_runs_and_says_what_it_did(
     assert ran.returncode == 0, ran.stderr
     assert "5 photographs of 4 x 4" in ran.stdout
     assert "coarse to fine: " in ran.stdout
-    assert ran.stdout.count("each new view: ") == 2
+    assert ran.stdout.count("each held-out view: ") == 2
     assert "core" in ran.stdout
     assert (tmp_path / "plenoxels.png").stat().st_size > 5_000

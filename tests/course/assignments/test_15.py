@@ -211,19 +211,19 @@ def test_the_exploration_runs_and_tells_the_two_formulas_apart(tmp_path: Path) -
     with Image.open(tmp_path / "pull.png") as image:
         assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
     said = done.stdout
-    new = float(said.split(" dB on new views (nothing at all has ")[0].rsplit(maxsplit=1)[1])
-    nothing = float(said.split("nothing at all has ")[1].split(" dB")[0])
+    new = float(said.split(" dB on held-out views (an empty scene has ")[0].rsplit(maxsplit=1)[1])
+    nothing = float(said.split("an empty scene has ")[1].split(" dB")[0])
     assert new > nothing + 2
-    assert float(said.split("doubled later is off by ")[1].split(";")[0]) < 1e-6
-    patched = said.split("the patch (kept whole, still doubled) by ")[1]
+    assert float(said.split("doubled later has an error of ")[1].split(";")[0]) < 1e-6
+    patched = said.split("the patch (stored whole, still doubled) of ")[1]
     assert float(patched.split("%")[0]) == pytest.approx(208, abs=1)
     differences, public, mended = (
         float(said.split(f"{name} ")[1].split(",")[0].split()[0])
-        for name in ("outside: differences", "the formula of public code", "branch of its own")
+        for name in ("outside: finite differences", "the formula of public code", "clamped branch")
     )
     assert mended == pytest.approx(differences, abs=2e-4)
     assert abs(public - differences) > 0.1 * abs(differences)
     if "core not installed" not in said:
-        pictures, derivatives = said.split("pictures differ by ")[1].split(", derivatives by ")
+        pictures, derivatives = said.split("images differ by ")[1].split(", derivatives by ")
         assert float(pictures) < 1e-10
         assert float(derivatives.split()[0]) < 1e-9

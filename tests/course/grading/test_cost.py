@@ -63,7 +63,7 @@ def trial() -> Trial:
 
 def price(trial: Trial, forward: str, backward: str) -> None:
     x = np.linspace(-2.0, 2.0, N)
-    trial.call(backward, x, 0.7, returns=Array((N,)))  # whoever remembers can do so here
+    trial.call(backward, x, 0.7, returns=Array((N,)))  # a cache could be filled here
     require_cheap(trial, (forward, (x,), Number()), (backward, (x, 0.7), Array((N,))))
 
 

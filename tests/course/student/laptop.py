@@ -1,7 +1,7 @@
 """A laptop: an environment with the course's wheel and what it requires, and nothing else.
 
-The core cannot be imported there, and what only POSIX systems have is poisoned, so that whoever
-reaches for it fails here as on Windows.
+The core cannot be imported there, and modules that only POSIX systems have are replaced, so that
+every use of them fails here as on Windows.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""What the hidden checks of several tasks share."""
+"""Helpers for the hidden checks of several tasks."""
 
 from ..common import on_points
 
 
 def bowls(t, n):
-    """A bowl, its gradient and a start; of n variables, or of one."""
+    """A quadratic, its gradient and a start; of n variables, or of one."""
     a = t.rng.uniform(0.5, 2.0, max(n, 1))
     f, grad = lambda x: float(0.5 * x @ (a * x)), lambda x: a * x
     return *on_points(len(a), f, grad), t.rng.uniform(1.0, 2.0, len(a))

@@ -3,14 +3,14 @@
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, hidden_check
 
 from ..common import EXACT, on_points, rotated_bowl, walk
 from .common import FAR, bowls
 
 
 def left_domain(t, n):
-    """What `gd_nd` takes, for n steps of which each ends where f is NaN."""
+    """Arguments of `gd_nd`, for n steps of which each ends where f is NaN."""
 
     def f(x):
         return float(np.sum(x - np.log(x))) if (x > 0.0).all() else math.nan
@@ -18,17 +18,16 @@ def left_domain(t, n):
     return *on_points(2, f, lambda x: 1.0 - 1.0 / x), t.rng.uniform(1.15, 1.2, 2), 12.0, n
 
 
-@check(
+@hidden_check(
     "01.3.contraction",
     points=4,
     calls=("gd_nd",),
-    visibility="hidden",
     tolerance=Tolerance(
         1e-6,
         "over the last 20 steps the factor is right to 4e-16, so 2 % are not needed; "
         "wrong ones differ by 0.08 or more",
     ),
-    hint="At the best step length each step multiplies the distance by Eq. (11), to the end.",
+    hint="At the best learning rate each step multiplies the distance by Eq. (11), to the end.",
     battery=[
         Subject(
             "gd_nd",
@@ -46,7 +45,7 @@ def left_domain(t, n):
     ],
 )
 def the_condition_number_gives_the_rate(t):
-    """At the best step length the distance shrinks by (kappa - 1) / (kappa + 1) a step."""
+    """At the best learning rate the distance shrinks by (kappa - 1) / (kappa + 1) a step."""
     for kappa in (5.0, 25.0):
         low = float(t.rng.uniform(0.5, 2.0))
         curvatures = low * np.array([1.0, 0.5 + 0.5 * kappa, kappa])

@@ -1,16 +1,15 @@
 """Task 01.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, Tolerance, check
+from photograd_course.grading import Array, Subject, Tolerance, hidden_check
 
 from .common import FAR, bowls
 
 
-@check(
+@hidden_check(
     "01.4.roots",
     points=5,
     calls=("momentum",),
-    visibility="hidden",
     tolerance=Tolerance(1e-11, "right answers differ by 4e-15 at most, wrong ones by 0.2 or more"),
     hint="The gradient is taken at the point, not where the velocity would lead.",
     battery=[
@@ -23,7 +22,7 @@ from .common import FAR, bowls
     ],
 )
 def a_parabola_swings_as_two_roots_say(t):
-    """On a bowl each part of the walk is a sum of two powers, damped waves among them."""
+    """On a quadratic each component is a sum of two powers, damped oscillations among them."""
     curvatures = np.array([0.1, 1.0, 6.0]) * t.rng.uniform(0.9, 1.1, 3)
     x0, n = t.rng.uniform(1.0, 2.0, 3), 25
     tau, beta = 0.3, float(t.rng.uniform(0.6, 0.85))

@@ -12,13 +12,13 @@ check = checks_for(calls=("backtracking",), visibility="hidden")
 
 
 def refused(t, n):
-    """What `backtracking` takes: n step lengths are refused."""
+    """Arguments of `backtracking`: n step sizes are rejected."""
     x, reach = t.rng.uniform(1.0, 2.0, 3), float(t.rng.uniform(1.2, 1.8))
     return Patient(lambda y: float(0.5 * y @ y)), lambda y: y, x, -(2.0**n) * reach * x
 
 
 @check(
-    "01.6.undefined", points=2, hint="Write the loop so that NaN is refused: `not value <= bound`."
+    "01.6.undefined", points=2, hint="Write the loop so that NaN is rejected: `not value <= bound`."
 )
 def a_step_out_of_the_domain_is_refused(t):
     """Where the function is NaN the step is too long."""
@@ -33,7 +33,7 @@ def a_step_out_of_the_domain_is_refused(t):
     t.require(f(x + tau * d) < f(x), "this step does not lead downhill")
 
 
-# Iterations of the best of 120 fixed step lengths from 1e-3 to 30, until a millionth of the excess
+# Iterations of the best of 120 fixed step sizes from 1e-3 to 30, until a millionth of the excess
 # is left; tests/course/assignments/test_01.py counts them again.
 FIXED_STEPS = {"bowl": 98, "valley": 244, "quartic": 23, "logistic": 6, "two walls": 30}
 
@@ -94,7 +94,7 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
     "01.6.descends",
     points=4,
     seconds=15.0,
-    hint="Begin with the step length tau0 that you are given, also above 1.",
+    hint="Begin with the given step size tau0, also above 1.",
     battery=[
         Subject("backtracking", refused, lambda _: Number(), sizes=(0, 1, 40, 200), tolerance=EXACT)
     ],

@@ -1,23 +1,22 @@
 """Task 02.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, gates_spec
 
 
 def multiplied(t, n):
-    """What the adapter `gates` takes, for n products."""
+    """Arguments of the adapter `gates`, for n products."""
     return "mul", *t.rng.normal(0.0, 3.0, (2, n))
 
 
-@check(
+@hidden_check(
     "02.1.many",
     points=3,
     calls=("Value.__add__", "Value.__mul__"),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes, to rounding, at places not known beforehand",
+    sole="the same mistakes, to rounding, at unseen places",
     battery=[
         Subject(
             "adapters.gates",
@@ -29,10 +28,10 @@ def multiplied(t, n):
     ],
 )
 def sums_and_products_at_random(t):
-    """Values and slopes of sums and products are right at 100 random places."""
+    """Values and local derivatives of sums and products are right at 100 random places."""
     a, b = t.rng.normal(0.0, 3.0, (2, 100))
     ones = np.ones(100)
     for op, right, slopes in (("add", a + b, [ones, ones]), ("mul", a * b, [b, a])):
         found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
         t.close(f"values of {op}", found["values"], right)
-        t.close(f"slopes of {op}", found["slopes"], np.stack(slopes, 1))
+        t.close(f"local derivatives of {op}", found["slopes"], np.stack(slopes, 1))

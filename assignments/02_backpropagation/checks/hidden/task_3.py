@@ -1,18 +1,17 @@
 """Task 02.3, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import hidden_check
 
 from ..common import EXACT, gates_spec
 
 
-@check(
+@hidden_check(
     "02.3.many",
     points=3,
     calls=("Value.exp", "Value.log", "Value.__pow__"),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes, to rounding, at places not known beforehand",
+    sole="the same mistakes, to rounding, at unseen places",
 )
 def gates_of_one_input_at_random(t):
     """exp, log and powers are right at 100 random places."""
@@ -25,4 +24,4 @@ def gates_of_one_input_at_random(t):
     for op, b, values, slopes in cases:
         found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
         t.close(f"values of {op}", found["values"], values)
-        t.close(f"slopes of {op}", found["slopes"][:, 0], slopes)
+        t.close(f"local derivatives of {op}", found["slopes"][:, 0], slopes)

@@ -13,7 +13,9 @@ ANALYTIC = Tolerance(
 
 
 @check(
-    "02.5.random", points=4, sole="fifty expressions, against differences and complex steps of ours"
+    "02.5.random",
+    points=4,
+    sole="fifty expressions, against finite differences and complex steps of ours",
 )
 def fifty_random_expressions(t):
     """Values and gradients of fifty random expressions are right."""
@@ -26,7 +28,7 @@ def fifty_random_expressions(t):
     right = [evaluate(program, x)[-1] for program, x in zip(programs, inputs, strict=True)]
     t.close("values", found["values"], right, ANALYTIC)
     for got, (_, _, differences, exact) in zip(found["gradients"], cases, strict=True):
-        t.close("gradients against differences", got, differences, DIFFERENCES)
+        t.close("gradients against finite differences", got, differences, DIFFERENCES)
         t.close("gradients", got, exact, ANALYTIC)
 
 

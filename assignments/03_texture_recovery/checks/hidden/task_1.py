@@ -1,22 +1,21 @@
 """Task 03.1, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from .common import sampled
 
 
-@check(
+@hidden_check(
     "03.1.hidden",
     points=3,
     calls=("bilinear_sample",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at places that are not known beforehand",
+    sole="the same mistakes at unseen points",
     battery=[Subject("bilinear_sample", sampled, lambda n: Array((n, 2)), rows=(1,))],
 )
 def samples_at_random_places(t):
-    """Samples are right at random places of random textures, one texel wide ones included."""
+    """Samples are right at random points of random textures, one texel wide ones included."""
     for shape in ((6, 3, 2), (1, 9, 1), (7, 1, 3), (1, 1, 2), (16, 11, 3)):
         T, uv = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.1, 1.1, (150, 2))
         got = t.call("bilinear_sample", T, uv, returns=Array((150, shape[2])))

@@ -12,7 +12,7 @@ check = checks_for(calls=("bilinear_sample_adjoint",), tolerance=EXACT, visibili
 @check(
     "03.2.hidden",
     points=4,
-    sole="the same mistakes at places that are not known beforehand",
+    sole="the same mistakes at unseen points",
     battery=[
         Subject(
             "bilinear_sample_adjoint",
@@ -22,7 +22,7 @@ check = checks_for(calls=("bilinear_sample_adjoint",), tolerance=EXACT, visibili
     ],
 )
 def the_adjoint_at_random_places(t):
-    """The adjoint is right at random places, one texel wide textures included."""
+    """The adjoint is right at random points, one texel wide textures included."""
     for shape in ((6, 3), (1, 9), (7, 1), (1, 1), (16, 11)):
         uv, g = t.rng.uniform(-0.1, 1.1, (150, 2)), t.rng.uniform(-1.0, 1.0, (150, 2))
         got = t.call("bilinear_sample_adjoint", shape, uv, g, returns=Array((*shape, 2)))

@@ -1,19 +1,18 @@
 """Task 03.3, hidden checks."""
 
-from photograd_course.grading import Array, Items, Number, Subject, check
+from photograd_course.grading import Array, Items, Number, Subject, hidden_check
 
 from ..common import EXACT
 from .common import measured
 
 
-@check(
+@hidden_check(
     "03.3.hidden",
     points=4,
     calls=("loss_and_grad",),
-    visibility="hidden",
     needs=("bilinear_sample", "bilinear_sample_adjoint"),
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("loss_and_grad", measured, lambda _: Items(Number(), Array((3, 5, 2))))],
 )
 def loss_and_gradient_of_random_textures(t):

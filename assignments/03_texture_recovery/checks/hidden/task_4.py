@@ -1,19 +1,18 @@
 """Task 03.4, hidden checks."""
 
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, hidden_check
 
 from ..common import CHAINED
 from .common import sampled
 
 
-@check(
+@hidden_check(
     "03.4.hidden",
     points=3,
     calls=("largest_curvature",),
-    visibility="hidden",
     needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
     tolerance=CHAINED,
-    sole="the same mistakes at places that are not known beforehand",
+    sole="the same mistakes at unseen points",
     battery=[
         Subject(
             "largest_curvature",
@@ -24,8 +23,8 @@ from .common import sampled
     ],
 )
 def the_estimate_at_random_places(t):
-    """The estimate is right after any number of rounds."""
+    """The estimate is right after any number of iterations."""
     for shape, n in (((4, 6), 0), ((5, 2), 1), ((3, 9), 7)):
         uv = t.rng.uniform(0.0, 1.0, (80, 2))
         got = t.call("largest_curvature", shape, uv, n, returns=Number())
-        t.close(f"after {n} rounds", got, t.reference.largest_curvature(shape, uv, n))
+        t.close(f"after {n} iterations", got, t.reference.largest_curvature(shape, uv, n))

@@ -1,4 +1,4 @@
-"""What the hidden checks of several tasks share."""
+"""Helpers for the hidden checks of several tasks."""
 
 from photograd_course.grading.generators import upper_directions
 
@@ -11,5 +11,5 @@ def pairs(t, n):
 
 
 def painted(t, n):
-    """What `gltf` takes."""
+    """Arguments of `gltf`."""
     return *pairs(t, n)[:2], *material(t.rng, n)

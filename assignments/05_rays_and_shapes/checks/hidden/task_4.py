@@ -1,7 +1,7 @@
 """Task 05.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import distances, same_hits, sphere
@@ -9,18 +9,17 @@ from ..task_4 import MARCHED, SLOPES, Surface, ball, both, marched, onto_ball, p
 
 
 def approached(t, n):
-    """What `march_sdf` takes: n rays that meet a ball."""
+    """Arguments of `march_sdf`: n rays that hit a ball."""
     center, radius = sphere(t)
     return Surface(ball(center, radius)), *onto_ball(t, n, center, radius)[:2], 50.0, 400
 
 
-@check(
+@hidden_check(
     "05.4.hidden",
     points=2,
     calls=("march_sdf",),
-    visibility="hidden",
     tolerance=MARCHED,
-    sole="the same mistakes at scenes that are not known beforehand",
+    sole="the same mistakes at unseen scenes",
     battery=[
         Subject(
             "march_sdf",
@@ -32,7 +31,7 @@ def approached(t, n):
     ],
 )
 def marches_at_random(t):
-    """Random scenes: what is met, the derivative, and how many places are asked for."""
+    """Random scenes: what is hit, the derivative, and how many points are tested."""
     for p_first in (True, False):
         center, radius = sphere(t)
         normal = unit_vectors(t.rng, 1)[0]
@@ -49,5 +48,5 @@ def marches_at_random(t):
             same_hits(t, got, right)
             grazing = np.abs(slopes) > 20  # where 1e-9 of t is much of a slope
             t.close("d_t", d_t[~grazing], slopes[~grazing])
-            said = f"{asked} places were asked for, {service.asked} are enough"
+            said = f"{asked} points were tested, {service.asked} are enough"
             t.require(asked <= 1.02 * service.asked, said)

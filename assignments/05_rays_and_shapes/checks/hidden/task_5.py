@@ -1,7 +1,7 @@
 """Task 05.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT, WHOLE, Scene, built
@@ -9,18 +9,17 @@ from ..task_5 import held
 
 
 def stacked(t, n):
-    """What `build_bvh` takes."""
+    """Arguments of `build_bvh`."""
     low = t.rng.uniform(-5, 5, (n, 3))
     return low, low + t.rng.uniform(0.2, 1.0, (n, 3))
 
 
-@check(
+@hidden_check(
     "05.5.hidden",
     points=2,
     calls=("build_bvh",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at things that are not known beforehand; growth",
+    sole="the same mistakes at unseen primitives; growth",
     battery=[
         Subject(
             "build_bvh",
@@ -31,7 +30,7 @@ def stacked(t, n):
     ],
 )
 def trees_at_random(t):
-    """Random things: the boxes fit, and rays ask for few more of them when there are many more."""
+    """Random primitives: the boxes fit, and many more of them cost a ray few more boxes."""
     means = []
     for count in (64, 1024):
         middle = t.rng.uniform(-5, 5, (count, 3)) * [1.0, 2.0, 1.0]
@@ -40,7 +39,7 @@ def trees_at_random(t):
         tree = built(t, low, high)
         things = held(tree)
         right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in things])
-        t.close(f"boxes of {count} things", tree[0], right)
+        t.close(f"boxes of {count} primitives", tree[0], right)
         asked = 0
         for _ in range(24):
             scene = Scene(low, high)
@@ -59,6 +58,6 @@ def trees_at_random(t):
         means.append(asked / 24)
     t.require(
         means[1] < 4 * means[0],
-        f"64 things: {means[0]:.1f} boxes for a ray, 1024 things: {means[1]:.1f}; "
+        f"64 primitives: {means[0]:.1f} boxes for a ray, 1024 primitives: {means[1]:.1f}; "
         "fewer than four times as many are enough",
     )

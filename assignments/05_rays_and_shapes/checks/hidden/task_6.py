@@ -1,13 +1,13 @@
 """Task 05.6, hidden checks."""
 
-from photograd_course.grading import Integer, Items, Number, Subject, check
+from photograd_course.grading import Integer, Items, Number, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_6 import first_met, rectangles, right_answer
 
 
 def searched(t, n):
-    """What `traverse` takes: n things, and a ray towards one of them."""
+    """Arguments of `traverse`: n primitives, and a ray toward one of them."""
     scene = rectangles(t, n, 3.0)
     scene.boxes, *tree = t.reference.build_bvh(scene.low, scene.high)
     origin = t.rng.uniform(-4, 4, 3)
@@ -15,14 +15,13 @@ def searched(t, n):
     return *tree, lambda k: scene.box(int(k)), scene.meet, origin, scene.direction
 
 
-@check(
+@hidden_check(
     "05.6.hidden",
     points=2,
     calls=("traverse",),
     needs=("build_bvh",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes in scenes that are not known beforehand",
+    sole="the same mistakes in unseen scenes",
     battery=[
         Subject(
             "traverse",
@@ -33,8 +32,8 @@ def searched(t, n):
     ],
 )
 def scenes_at_random(t):
-    """Random rays in random scenes: the answer, and how many boxes and things it takes."""
-    # Of 3, 6, 12 ... things a third are alone in their leaves, and those boxes are flat.
+    """Random rays in random scenes: the answer, and how many boxes and primitives it takes."""
+    # Of 3, 6, 12 ... primitives a third are alone in their leaves, and those boxes are flat.
     for count, size in ((3, 1.5), (24, 6.0), (96, 1.5)):
         scene = rectangles(t, count, size)
         low, high = scene.low, scene.high
@@ -60,4 +59,4 @@ def scenes_at_random(t):
             )
             enough = [enough[0] + len(scene.asked), enough[1] + len(scene.met)]
         for what, got, right in zip(("boxes", "things"), mine, enough, strict=True):
-            t.require(got <= 1.05 * right, f"{got} {what} were asked for, {right} are enough")
+            t.require(got <= 1.05 * right, f"{got} {what} were tested, {right} are enough")

@@ -1,4 +1,4 @@
-"""What the hidden checks of several tasks share."""
+"""Helpers for the hidden checks of several tasks."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from ..common import scene_of
 
 
 def mixed_room(t):
-    """A room with two lamps, one before the other in part, glossy things and a ball."""
+    """A room with two lights, one partly before the other, glossy primitives and a ball."""
     some = [
         {
             "base_color": t.rng.uniform(0.1, 0.9, 3),
@@ -28,7 +28,7 @@ def mixed_room(t):
 
 
 def looked_at(t, scene, n):
-    """A hit of n places of `mixed_room`, seen from above and outside."""
+    """A hit of n points of `mixed_room`, seen from above and outside."""
     origins = np.tile([0.4, 0.3, 2.2], (n, 1))
     directions = np.column_stack(
         [t.rng.uniform(-1.2, 0.6, n), t.rng.uniform(-1.2, 0.5, n), t.rng.uniform(-2.9, -1.5, n)]
@@ -45,5 +45,5 @@ def looking(t, n):
 
 
 def estimated(t, n):
-    """What `direct_light` takes."""
+    """Arguments of `direct_light`."""
     return *looking(t, n), t.rng.random((n, 3)), t.rng.random((n, 3))

@@ -1,18 +1,17 @@
 """Task 07.4, hidden checks."""
 
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_4 import played
 
 
-@check(
+@hidden_check(
     "07.4.hidden",
     points=1,
     calls=("roulette",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="paths that are not known beforehand",
+    sole="unseen paths",
     battery=[
         Subject(
             "roulette",
@@ -28,5 +27,5 @@ def random_roulette(t):
     beta[:4], u[:4] = 0.02, [0.01, 0.019, 0.021, 0.03]
     right, goes = t.reference.roulette(beta, u)
     after, alive = played(t, beta, u)
-    t.require(bool((alive == goes).all()), "other paths go on than should")
+    t.require(bool((alive == goes).all()), "the wrong paths continue")
     t.close("beta", after, right)

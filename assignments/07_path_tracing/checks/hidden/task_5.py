@@ -1,20 +1,19 @@
 """Task 07.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT, cube, require_mean, scene_of, ways
 from ..task_5 import TASK_5, rays_inside, traced
 from .common import mixed_room
 
 
-@check(
+@hidden_check(
     "07.5.hidden",
     points=3,
     calls=("trace_paths",),
     needs=TASK_5,
-    visibility="hidden",
-    sole="glossy things, shadows, and paths that leave the room",
+    sole="glossy primitives, shadows, and paths that leave the room",
     battery=[
         Subject(
             "adapters.traced",
@@ -32,7 +31,7 @@ from .common import mixed_room
     ],
 )
 def paths_of_a_room(t):
-    """An open room where walls shine differently, with a glossy ball: the solution's mean."""
+    """An open room with walls of different emission and a glossy ball: the mean of the solution."""
     walls = [
         (
             *face[:3],
@@ -51,7 +50,7 @@ def paths_of_a_room(t):
     theirs = t.reference.trace_paths(
         scene, np.tile(origins, (times, 1)), np.tile(directions, (times, 1)), 4, t.rng
     )
-    # Rays differ more than two estimates for one of them do: their differences are judged.
+    # The variance over rays is larger than that of two estimates of one ray: test differences.
     right = theirs.reshape(times, n, 3).mean(axis=0)
     require_mean(
         t,

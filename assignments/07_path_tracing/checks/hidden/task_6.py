@@ -16,7 +16,7 @@ check = checks_for(calls=("direct_light_backward",), visibility="hidden")
     points=2,
     needs=TASK_3,
     tolerance=GATE,
-    sole="two lamps, shadows, a ball and something matte",
+    sole="two lights, shadows, a ball and a matte primitive",
     battery=[
         Subject(
             "direct_light_backward",
@@ -26,9 +26,9 @@ check = checks_for(calls=("direct_light_backward",), visibility="hidden")
     ],
 )
 def the_gradient_of_a_room(t):
-    """A room with two lamps, a ball and shadows, against the solution."""
+    """A room with two lights, a ball and shadows, compared with the solution."""
     scene = mixed_room(t)
-    hit = looked_at(t, scene, 1000)  # fewer: too few samples of the material meet a lamp
+    hit = looked_at(t, scene, 1000)  # fewer: too few BSDF samples hit a light
     n = len(hit["thing"])
     u, d = t.rng.random((2, n, 3)), random_cotangent(t.rng, (n, 3))
     right = t.reference.direct_light_backward(scene, hit, u[0], u[1], d)
@@ -38,7 +38,7 @@ def the_gradient_of_a_room(t):
 
 
 def glossy_table(color, metalness, roughness):
-    """A table under a lamp, and the rays of a small picture of it."""
+    """A table under a light, and the rays of a small image of it."""
     table = ((-1, 0, -1), (0, 0, 2), (2, 0, 0))
     lamp = ((-0.5, 0.4, -1.0), (1.0, 0, 0), (0, 0.5, 0.4), {"emission": [6, 5, 4]})
     given = {"base_color": color, "metalness": metalness, "roughness": roughness}
@@ -49,11 +49,11 @@ def glossy_table(color, metalness, roughness):
     "07.6.recover",
     points=3,
     needs=(*TASK_3, "direct_light"),
-    sole="what it is for: a base color and a roughness, found in a picture",
+    sole="the application: a base color and a roughness, recovered from an image",
 )
 def a_material_is_recovered(t):
-    """The base color within 0.01 and the roughness within 0.02, from an unseen picture."""
-    # A polished table, or one channel far from the others, takes more steps than these.
+    """The base color within 0.01 and the roughness within 0.02, from an unseen image."""
+    # A smooth table, or one channel far from the others, takes more steps than these.
     color, roughness = t.rng.uniform(0.3, 0.8, 3), float(t.rng.uniform(0.35, 0.5))
     truth = glossy_table(color, 0.5, roughness)
     start = glossy_table([0.5, 0.5, 0.5], 0.5, 0.6)

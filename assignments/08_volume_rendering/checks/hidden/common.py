@@ -1,4 +1,4 @@
-"""What the hidden checks of several tasks share."""
+"""Helpers for the hidden checks of several tasks."""
 
 from photograd_course.grading import Tolerance
 
@@ -8,5 +8,5 @@ SUMS = Tolerance(
 
 
 def placed(t, n):
-    """A grid, and n places."""
+    """A grid, and n points."""
     return t.rng.uniform(-1.0, 1.0, (3, 1, 4, 2)), t.rng.uniform(-0.1, 1.1, (n, 3))

@@ -1,17 +1,16 @@
 """Task 08.1, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, random_rays, seen
 
 
-@check(
+@hidden_check(
     "08.1.hidden",
     points=2,
     calls=("composite",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject("composite", random_rays, lambda n: seen(n, 3), rows=(0, 1, 2)),
         Subject(

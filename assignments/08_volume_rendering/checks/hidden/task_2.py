@@ -18,14 +18,14 @@ RAY_COST = 30.0
 
 
 def moved(t, n):
-    """What `composite_adjoint` takes for n rays of 6 steps."""
+    """Arguments of `composite_adjoint` for n rays of 6 steps."""
     return *random_rays(t, n), t.rng.uniform(-1, 1, (n, 3)), t.rng.uniform(-1, 1, n)
 
 
 @check(
     "08.2.hidden",
     points=4,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("composite_adjoint", moved, lambda n: slopes_of((n, 6), 3))],
 )
 def adjoints_of_random_rays(t):

@@ -1,20 +1,19 @@
 """Task 08.5, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT
 from .common import placed
 
 
-@check(
+@hidden_check(
     "08.5.hidden",
     points=2,
     calls=("trilinear_adjoint",),
-    visibility="hidden",
     tolerance=EXACT,
     needs=("trilinear",),
-    sole="the same mistakes at places that are not known beforehand",
+    sole="the same mistakes at unseen points",
     battery=[
         Subject(
             "trilinear_adjoint",
@@ -24,7 +23,7 @@ from .common import placed
     ],
 )
 def the_adjoint_at_random_places(t):
-    """The adjoint is right at random places, one voxel wide grids included, and cheap."""
+    """The adjoint is right at random points, one voxel wide grids included, and cheap."""
     for shape in ((6, 3, 4), (1, 5, 2), (1, 1, 1)):
         u, g = t.rng.uniform(-0.1, 1.1, (90, 3)), t.rng.uniform(-1.0, 1.0, (90, 2))
         got = t.call("trilinear_adjoint", shape, u, g, returns=Array((*shape, 2)))

@@ -1,6 +1,6 @@
 """Task 08.6, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..task_6 import EARLIER, random_view, slopes_of_view
@@ -8,19 +8,18 @@ from .common import SUMS
 
 
 def pictured(t, n):
-    """What `render_adjoint` takes for n rays of 5 steps."""
+    """Arguments of `render_adjoint` for n rays of 5 steps."""
     background, d_pixel = t.rng.uniform(0.0, 1.0, 3), t.rng.uniform(-1.0, 1.0, (n, 3))
     return *random_view(t, n, (4, 3, 5)), 5, background, d_pixel
 
 
-@check(
+@hidden_check(
     "08.6.hidden",
     points=3,
     calls=("render_adjoint",),
     needs=EARLIER,
-    visibility="hidden",
     tolerance=SUMS,
-    sole="the same mistakes in views that are not known beforehand",
+    sole="the same mistakes in unseen views",
     battery=[Subject("render_adjoint", pictured, lambda _: slopes_of_view((4, 3, 5)))],
 )
 def the_picture_of_a_random_volume(t):

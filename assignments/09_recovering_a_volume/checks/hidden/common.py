@@ -1,4 +1,4 @@
-"""What the hidden checks of several tasks share."""
+"""Helpers for the hidden checks of several tasks."""
 
 import numpy as np
 

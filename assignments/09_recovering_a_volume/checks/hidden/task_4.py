@@ -1,6 +1,6 @@
 """Task 09.4, hidden checks."""
 
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT, loss_and_slope, rough
@@ -10,14 +10,13 @@ from ..common import EXACT, loss_and_slope, rough
 TV_COST = 2500.0
 
 
-@check(
+@hidden_check(
     "09.4.hidden",
     points=4,
     calls=("tv_loss_adjoint",),
     needs=("psnr",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at volumes that are not known beforehand",
+    sole="the same mistakes at unseen volumes",
     battery=[
         Subject(
             "tv_loss_adjoint",
@@ -27,7 +26,7 @@ TV_COST = 2500.0
     ],
 )
 def the_roughness_of_random_volumes(t):
-    """Roughness and its derivative are right for random volumes, and cheap."""
+    """Total variation and its derivative are right for random volumes, and cheap."""
     for shape, eps in (((4, 3, 5, 4), 0.1), ((1, 6, 2, 1), 0.01), ((1, 1, 1, 3), 0.5)):
         grid = t.rng.uniform(0.0, 1.0, shape)
         got, right = rough(t, grid, eps), t.reference.tv_loss_adjoint(grid, eps)

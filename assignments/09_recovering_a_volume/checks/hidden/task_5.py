@@ -13,7 +13,7 @@ check = checks_for(calls=("gradient_sign_map",), needs=EARLIER, visibility="hidd
 @check(
     "09.5.hidden",
     points=2,
-    sole="the same mistakes at volumes that are not known beforehand",
+    sole="the same mistakes at unseen volumes",
     battery=[
         Subject(
             "gradient_sign_map",
@@ -31,11 +31,7 @@ def signs_of_random_volumes(t):
         t.require(wrong == 0, f"{wrong} of {grid[..., 3].size} voxels have the wrong sign")
 
 
-@check(
-    "09.5.scene",
-    points=3,
-    sole="what the handout's pictures claim, on a scene that nobody has seen",
-)
+@check("09.5.scene", points=3, sole="what the handout's pictures claim, on an unseen scene")
 def inside_more_and_outside_less(t):
     """From fog, the map is -1 inside what was photographed, 1 where only background is seen."""
     scene = two_balls(t, 12, 0.7)

@@ -11,7 +11,7 @@ check = checks_for(calls=("fit_volume",), needs=ALL, visibility="hidden")
 
 
 def recovering(t, n):
-    """What `fit_volume` takes for n steps, with a seed."""
+    """Arguments of `fit_volume` for n steps, with a seed."""
     return random_views(t, 2, 3, 4), t.rng.uniform(0.1, 0.9, (2, 3, 2, 4)), n, 3
 
 
@@ -36,7 +36,7 @@ def telling_start(t, views, shape, seed):
     "09.6.hidden",
     points=3,
     tolerance=CHAINED,
-    sole="the same mistakes at scenes that are not known beforehand",
+    sole="the same mistakes at unseen scenes",
     battery=[
         Subject(
             "adapters.fit",
@@ -61,10 +61,7 @@ def fits_of_random_scenes(t):
 
 
 @check(
-    "09.6.recovers",
-    points=6,
-    seconds=60.0,
-    sole="the whole: a scene that nobody has seen, from its photographs",
+    "09.6.recovers", points=6, seconds=60.0, sole="the whole: an unseen scene, from its photographs"
 )
 def an_unseen_scene_is_recovered(t):
     """Your fit is run on a new scene, and judged by photographs that it never got."""
@@ -78,4 +75,4 @@ def an_unseen_scene_is_recovered(t):
     truth = unseen["pictures"].reshape(-1, 3)
     yours, mine = (t.reference.psnr(rendered(t, each, unseen), truth) for each in (found, best))
     asked = mine - BELOW
-    t.require(yours >= asked, f"{yours:.1f} dB on unseen photographs, asked {asked:.1f} dB")
+    t.require(yours >= asked, f"{yours:.1f} dB on held-out photographs, asked {asked:.1f} dB")

@@ -1,22 +1,21 @@
 """Task 10.1, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL, blocks
 from ..task_1 import cells_of, octree
 
 
 def halved(t, n):
-    """What `octree_from_dense` takes: a cube whose side is the power of two up to n."""
+    """Arguments of `octree_from_dense`: a cube whose side is the power of two up to n."""
     return (blocks(t, 1 << n.bit_length() - 1, 0.9),)
 
 
-@check(
+@hidden_check(
     "10.1.hidden",
     points=2,
     calls=("octree_from_dense",),
-    visibility="hidden",
-    sole="the same mistakes in cubes that are not known beforehand",
+    sole="the same mistakes in unseen cubes",
     battery=[
         Subject(
             "octree_from_dense",

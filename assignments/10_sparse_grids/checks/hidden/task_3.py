@@ -1,23 +1,22 @@
 """Task 10.3, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL
 from ..task_3 import crowd, free_table, insert, require_sound, some_voxels
 
 
 def inserted(t, n):
-    """What `voxel_hash_insert` takes, for n voxels."""
+    """Arguments of `voxel_hash_insert`, for n voxels."""
     return free_table(16), some_voxels(t, n), t.rng.permutation(n)
 
 
-@check(
+@hidden_check(
     "10.3.hidden",
     points=1,
     calls=("voxel_hash_insert",),
-    visibility="hidden",
-    sole="the same mistakes at voxels that are not known beforehand",
+    sole="the same mistakes at unseen voxels",
     battery=[
         Subject(
             "voxel_hash_insert",

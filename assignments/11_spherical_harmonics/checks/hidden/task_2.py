@@ -1,25 +1,24 @@
 """Task 11.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT
 
 
 def weighted(t, n):
-    """What `sh_project` takes, for n directions."""
+    """Arguments of `sh_project`, for n directions."""
     return unit_vectors(t.rng, n), t.rng.uniform(0.1, 1.0, n), t.rng.uniform(-1.0, 1.0, (n, 2)), 3
 
 
-@check(
+@hidden_check(
     "11.2.hidden",
     points=3,
     calls=("sh_project",),
     needs=("sh_basis",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[Subject("sh_project", weighted, lambda _: Array((16, 2)))],
 )
 def projections_of_random_values(t):

@@ -15,7 +15,7 @@ check = checks_for(
 @check(
     "11.3.hidden",
     points=5,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "sh_color_adjoint",

@@ -1,20 +1,19 @@
 """Task 11.4, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import random_rotation
 
 from ..common import EXACT
 from ..task_4 import rotated
 
 
-@check(
+@hidden_check(
     "11.4.hidden",
     points=3,
     calls=("sh_rotate",),
     needs=("sh_basis", "sh_project"),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at turns that are not known beforehand",
+    sole="the same mistakes at unseen rotations",
     battery=[
         Subject(
             "sh_rotate",
@@ -24,7 +23,7 @@ from ..task_4 import rotated
     ],
 )
 def random_turns(t):
-    """Random coefficients are turned rightly, for each degree."""
+    """Random coefficients are rotated rightly, for each degree."""
     for degree in range(5):
         c, R = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2)), random_rotation(t.rng)
         t.close(f"degree {degree}", rotated(t, c, R), t.reference.sh_rotate(c, R))

@@ -1,6 +1,6 @@
 """Task 11.5, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT
@@ -8,7 +8,7 @@ from ..task_5 import lit
 
 
 def among(t, n):
-    """What `probe_irradiance` takes, for n places."""
+    """Arguments of `probe_irradiance`, for n points."""
     return (
         t.rng.uniform(-1, 1, (2, 3, 1, 9, 2)),
         t.rng.uniform(-0.5, 3, (n, 3)),
@@ -16,14 +16,13 @@ def among(t, n):
     )
 
 
-@check(
+@hidden_check(
     "11.5.hidden",
     points=2,
     calls=("probe_irradiance",),
     needs=("sh_basis",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at probes that are not known beforehand",
+    sole="the same mistakes at unseen probes",
     battery=[Subject("probe_irradiance", among, lambda n: Array((n, 2)), rows=(1, 2))],
 )
 def irradiance_among_random_probes(t):

@@ -1,7 +1,7 @@
 """Task 15.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT, ahead, in_world, some_camera
@@ -9,24 +9,23 @@ from ..task_2 import folded, outside, seen, seen_back, shapes
 
 
 def projected(t, n):
-    """What `project` takes."""
+    """Arguments of `project`."""
     camera = some_camera(t.rng)
     return in_world(camera, ahead(t.rng, n)), shapes(t.rng, n), camera
 
 
 def pulled(t, n):
-    """What the `back` of `project` takes, after what `project` takes."""
+    """Arguments of the `back` of `project`, after those of `project`."""
     return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
 
 
-@check(
+@hidden_check(
     "15.2.hidden",
     points=3,
     calls=("project",),
     adjoints=("project",),
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at values that are not known beforehand",
+    sole="the same mistakes at unseen values",
     battery=[
         Subject(
             "adapters.project",

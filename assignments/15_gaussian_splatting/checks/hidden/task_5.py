@@ -1,6 +1,6 @@
 """Task 15.5, hidden checks."""
 
-from photograd_course.grading import Array, Record, Subject, check
+from photograd_course.grading import Array, Record, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent, require_cheap
 
 from ..common import EARLIER, EXACT, ahead, in_world, some_camera, some_scene
@@ -9,20 +9,19 @@ from .common import values
 
 
 def pictured(t, n):
-    """What `render` takes: five Gaussians, n pixels."""
+    """Arguments of `render`: five Gaussians, n pixels."""
     camera = some_camera(t.rng)
     pixels, background = middle_pixels(t.rng, camera, n), t.rng.uniform(0.0, 1.0, 3)
     return some_scene(t.rng, camera, 5), camera, pixels, background
 
 
-@check(
+@hidden_check(
     "15.5.hidden",
     points=2,
     calls=("render",),
     needs=EARLIER,
-    visibility="hidden",
     tolerance=EXACT,
-    sole="the same mistakes at unknown scenes, and what the way back costs",
+    sole="the same mistakes at unknown scenes, and the cost of the backward pass",
     battery=[
         Subject(
             "adapters.render", pictured, lambda n: Array((n, 3)), right=values("render"), rows=(2,)

@@ -18,7 +18,7 @@ class Changed:
 
 
 def crowded(t, n):
-    """What `densify` takes, with a seed."""
+    """Arguments of `densify`, with a seed."""
     scene = some_scene(t.rng, some_camera(t.rng), n, size=0.05)
     return scene, t.rng.exponential(0.003, n), 7, 1000
 
@@ -28,7 +28,7 @@ def crowded(t, n):
     points=1,
     needs=("covariance",),
     tolerance=EXACT,
-    sole="the same mistakes at scenes that are not known beforehand",
+    sole="the same mistakes at unseen scenes",
     battery=[Subject("adapters.densify", crowded, lambda _: Changed(), has_right=False)],
 )
 def random_changes(t):
@@ -95,5 +95,5 @@ def denser_is_better(t):
         )
         losses.append(max(float(found[-5:].mean()), 1e-30))
     gain = 10 * np.log10(losses[0] / losses[1])
-    t.require(gain >= 2.0, f"with densify the fit is {gain:.1f} dB better, asked 2 dB")
+    t.require(gain >= 2.0, f"with densify the fit is {gain:.1f} dB better, threshold 2 dB")
     t.require(losses[1] < 0.5 * found[0], "the fit hardly improves the picture")

@@ -11,16 +11,17 @@ namespace photograd {
 
 inline constexpr std::int64_t march_slab_samples = 1 << 20;
 
-inline std::int64_t chunk_count(std::int64_t rays) {
-    return (rays + march_chunk - 1) / march_chunk;
+inline std::int64_t chunk_count(std::int64_t rays, std::int64_t size = march_chunk) {
+    return (rays + size - 1) / size;
 }
 
-/// visit(chunk, begin, end) in parallel for rays [first, last), march_chunk of them at a time.
+/// visit(chunk, begin, end) in parallel for rays [first, last), `size` of them at a time.
 template <class Visit>
-void for_chunks(std::int64_t first, std::int64_t last, Visit&& visit) {
-    parallel_for(chunk_count(last - first), [&](std::int64_t chunk) {
-        const std::int64_t begin = first + chunk * march_chunk;
-        visit(chunk, begin, std::min(begin + march_chunk, last));
+void for_chunks(std::int64_t first, std::int64_t last, Visit&& visit,
+                std::int64_t size = march_chunk) {
+    parallel_for(chunk_count(last - first, size), [&](std::int64_t chunk) {
+        const std::int64_t begin = first + chunk * size;
+        visit(chunk, begin, std::min(begin + size, last));
     });
 }
 

@@ -29,6 +29,15 @@ struct MarchOptions {
     [[nodiscard]] double tau_stop() const { return stop > 0 ? -std::log(stop) : 1e30; }
 };
 
+/// Rays of a chunk: what the field says, if it does.
+template <class F>
+constexpr std::int64_t chunk_rays() {
+    if constexpr (requires { F::chunk_rays; })
+        return F::chunk_rays;
+    else
+        return march_chunk;
+}
+
 namespace detail {
 
 /// The rays of a chunk that still march, and the batch of their next samples.
@@ -160,13 +169,16 @@ struct BackwardPass {
 template <Real R, class F>
 void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
            const MarchOutputs<R>& out) {
-    for_chunks(0, rays.count, [&](std::int64_t, std::int64_t begin, std::int64_t end) {
-        detail::ForwardPass<R> pass{options.quadrature, static_cast<R>(options.dt), begin, {}};
-        pass.totals.resize(static_cast<std::size_t>(end - begin));
-        detail::walk(field, rays, options, begin, end, pass);
-        for (std::int64_t ray = begin; ray < end; ++ray)
-            write_outputs(pass.totals[static_cast<std::size_t>(ray - begin)], ray, out);
-    });
+    for_chunks(
+        0, rays.count,
+        [&](std::int64_t, std::int64_t begin, std::int64_t end) {
+            detail::ForwardPass<R> pass{options.quadrature, static_cast<R>(options.dt), begin, {}};
+            pass.totals.resize(static_cast<std::size_t>(end - begin));
+            detail::walk(field, rays, options, begin, end, pass);
+            for (std::int64_t ray = begin; ray < end; ++ray)
+                write_outputs(pass.totals[static_cast<std::size_t>(ray - begin)], ray, out);
+        },
+        chunk_rays<F>());
 }
 
 /// Adds parameter gradients to the sink's buffer, and gradients of the rays where `adjoint` has
@@ -176,20 +188,23 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
                     const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,
                     typename F::Sink& sink) {
     for_slabs(rays.samples, rays.count, [&](std::int64_t first, std::int64_t last) {
-        sink.begin(static_cast<int>(chunk_count(last - first)));
-        for_chunks(first, last, [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
-            detail::BackwardPass<R, F> pass{field,
-                                            options.quadrature,
-                                            static_cast<R>(options.dt),
-                                            begin,
-                                            static_cast<int>(chunk),
-                                            sink,
-                                            adjoint,
-                                            {}};
-            for (std::int64_t ray = begin; ray < end; ++ray)
-                pass.cotangents.push_back(start_cotangents(out, adjoint, ray));
-            detail::walk(field, rays, options, begin, end, pass);
-        });
+        sink.begin(static_cast<int>(chunk_count(last - first, chunk_rays<F>())));
+        for_chunks(
+            first, last,
+            [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
+                detail::BackwardPass<R, F> pass{field,
+                                                options.quadrature,
+                                                static_cast<R>(options.dt),
+                                                begin,
+                                                static_cast<int>(chunk),
+                                                sink,
+                                                adjoint,
+                                                {}};
+                for (std::int64_t ray = begin; ray < end; ++ray)
+                    pass.cotangents.push_back(start_cotangents(out, adjoint, ray));
+                detail::walk(field, rays, options, begin, end, pass);
+            },
+            chunk_rays<F>());
         sink.finish();
     });
 }

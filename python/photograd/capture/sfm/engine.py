@@ -42,13 +42,21 @@ class Engine(Protocol):
     """Structure from motion on photographs in a folder, by their names."""
 
     def enter(self, groups: Sequence[Sequence[str]]) -> None:
-        """List the photographs, one group for each camera; the same list again changes nothing."""
+        """List the photographs, one group for each camera; the same list again changes nothing.
+
+        Args:
+            groups: names of photographs; those of a group have one camera.
+        """
 
     def extracted(self) -> set[str]:
         """Photographs whose features are known."""
 
     def extract(self, names: Sequence[str]) -> None:
-        """Find features."""
+        """Find features.
+
+        Args:
+            names: of photographs.
+        """
 
     def pending(self, pairs: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
         """Those of the pairs that have not been compared."""
@@ -85,6 +93,12 @@ class Settings:
 
 def open_engine(folder: Path, photographs: Path, settings: Settings, threads: int) -> Engine:
     """The engine that pycolmap is, with its database in `folder`.
+
+    Args:
+        folder: for the database.
+        photographs: folder of the images.
+        settings: of the reconstruction.
+        threads: of the engine.
 
     Raises:
         IoError: pycolmap is not installed.

@@ -89,6 +89,10 @@ def find_photographs(folder: Path) -> tuple[list[Photograph], list[str]]:
 def copy_photographs(photographs: list[Photograph], folder: Path) -> None:
     """Copy to `folder`, turned upright where the tag says so; what is there already stays.
 
+    Args:
+        photographs: to be copied.
+        folder: for the copies.
+
     Raises:
         IoError: a file cannot be written.
     """

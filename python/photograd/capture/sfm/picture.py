@@ -17,7 +17,13 @@ _FRUSTUM = 0.06  # length of a drawn camera, of the width of the picture
 
 
 def draw_cameras(capture: Capture, path: Path, title: str) -> None:
-    """Write a PNG of the points in their colors and the cameras as wedges that open forwards."""
+    """Write a PNG of the points in their colors and the cameras as wedges that open forwards.
+
+    Args:
+        capture: with points.
+        path: of the picture.
+        title: a line above it.
+    """
     with style.house_style():
         figure = style.new_figure(2 * WIDTH + 1.6, HEIGHT + 1.3)
         panels = [(0, 2, "from above", "x", "z"), (0, 1, "from the side", "x", "y")]

@@ -72,6 +72,12 @@ class InverseRendering:
     ) -> None:
         """Check everything, and begin at the parameters' starts.
 
+        Args:
+            scene: with a first guess.
+            targets: pictures (H, W, 3) in linear radiance, or `Target`s.
+            parameters: names, or `Parameter`s.
+            options: steps, samples, rates, seed; None takes the defaults.
+
         Raises:
             RangeError: no parameter, one twice, one that the scene does not have or whose
                 derivative is incomplete, or out of bounds.
@@ -176,6 +182,12 @@ class InverseRendering:
     ) -> RecoveryResult:
         """Step until the end or until `should_stop`; the folder then holds the checkpoint.
 
+        Args:
+            folder: for the checkpoint; None keeps nothing on disk.
+            on_step: called after each step.
+            should_stop: asked after each step; True saves and ends the run.
+            checkpoint_seconds: between two checkpoints.
+
         Raises:
             IoError: the checkpoint cannot be written.
             Error: as `step`.
@@ -197,7 +209,11 @@ class InverseRendering:
         return self.result(run.seconds)
 
     def result(self, seconds: float = 0.0) -> RecoveryResult:
-        """What has been found so far."""
+        """What has been found so far.
+
+        Args:
+            seconds: of the last run.
+        """
         params = self.values()
         return RecoveryResult(
             params,
@@ -210,7 +226,11 @@ class InverseRendering:
         )
 
     def save(self, folder: Path) -> None:
-        """Write the checkpoint DIR/recovery.npz atomically; IoError if that fails."""
+        """Write the checkpoint DIR/recovery.npz atomically; IoError if that fails.
+
+        Args:
+            folder: DIR, which exists.
+        """
         save_state(folder, self, self._sampled)
 
     def load(self, folder: Path) -> None:
@@ -230,7 +250,12 @@ class InverseRendering:
         return [int(k) for k in choice(self.options.seed, len(self.targets), count, step=step)]
 
     def seeds(self, step: int, view: int) -> tuple[int, int]:
-        """64 random bits for each half: they share nothing, with each other or other steps."""
+        """64 random bits for each half: they share nothing, with each other or other steps.
+
+        Args:
+            step: of the descent.
+            view: number of the target.
+        """
         buffer, words = np.arange(2)[:, None], np.arange(2)[None, :]
         drawn = random_words(
             self.options.seed, step=step, pixel=view, sample=buffer, dimension=words
@@ -253,7 +278,13 @@ FILE_NAME = "recovery.npz"
 
 
 def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -> None:
-    """Write DIR/recovery.npz; `sampled` are the values that the tracer was built with."""
+    """Write DIR/recovery.npz; `sampled` are the values that the tracer was built with.
+
+    Args:
+        folder: DIR, which exists.
+        job: at any step.
+        sampled: {name: value} by which lights are sampled.
+    """
     state = {f"sampled.{name}": value for name, value in sampled.items()}
     state |= {f"curves.{name}": np.array(rows) for name, rows in job.curves.items()}
     meta = {"step": job.step_number, **fingerprint(job)}
@@ -265,6 +296,10 @@ def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -
 
 def load_state(folder: Path, job: InverseRendering) -> dict[str, Array]:
     """Bring a job to where its checkpoint ends; the values that its tracer was built with.
+
+    Args:
+        folder: of the checkpoint.
+        job: that was just begun.
 
     Raises:
         IoError: a missing or damaged checkpoint.
@@ -319,7 +354,11 @@ def _require_same(own: dict[str, Any], saved: dict[str, Any]) -> None:
 
 
 def fingerprint(job: InverseRendering) -> dict[str, Any]:
-    """The options, and short texts that change with the scene, the pictures and the parameters."""
+    """The options, and short texts that change with the scene, the pictures and the parameters.
+
+    Args:
+        job: at any step.
+    """
     pictures = hashlib.sha256()
     for target in job.targets:
         camera = target.camera

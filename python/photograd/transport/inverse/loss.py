@@ -75,7 +75,12 @@ class Target:
 
 
 def require_size(image: Array, camera: Camera) -> None:
-    """Raise ShapeError unless the camera takes pictures of this size."""
+    """Raise ShapeError unless the camera takes pictures of this size.
+
+    Args:
+        image: (H, W, 3).
+        camera: that took it.
+    """
     if image.shape[:2] != (camera.height, camera.width):
         expected = f"{camera.width} x {camera.height} pixels as the camera has"
         got = f"{image.shape[1]} x {image.shape[0]}"
@@ -84,6 +89,10 @@ def require_size(image: Array, camera: Camera) -> None:
 
 def checked_targets(targets: Any, scene: Scene) -> tuple[Target, ...]:
     """One picture or several, bare or as `Target`, all with a camera.
+
+    Args:
+        targets: a picture, a `Target`, or several of either.
+        scene: whose camera is taken where there is none.
 
     Raises:
         ShapeError: none, or a picture that its camera does not take.
@@ -107,6 +116,10 @@ def loss_weights(target: Target, kind: str) -> Array:
     "relative" divides the difference by the target plus the channel's mean: a highlight then does
     not outshout the rest, nor a bright channel a dark one. The weight depends on the target alone:
     through one that depended on the rendering, its noise would come back in.
+
+    Args:
+        target: a picture.
+        kind: "squared" or "relative".
     """
     own = np.ones_like(target.image) if target.weight is None else target.weight
     if kind == "squared":
@@ -124,14 +137,27 @@ PILOT_SEED = 0x5DEECE66D  # makes another seed of one
 
 
 def dual_buffer_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
-    """The mean of w (a - t) (b - t); all four are (H, W, 3). Below 0 now and then, by chance."""
+    """The mean of w (a - t) (b - t); all four are (H, W, 3). Below 0 now and then, by chance.
+
+    Args:
+        a, b: pictures of independent seeds.
+        target: t.
+        weight: w.
+    """
     return float(np.mean(weight * (a - target) * (b - target)))
 
 
 def dual_buffer_loss_backward(
     a: Array, b: Array, target: Array, weight: Array, d_loss: float = 1.0
 ) -> tuple[Array, Array]:
-    """(dL/da, dL/db), (H, W, 3) each."""
+    """(dL/da, dL/db), (H, W, 3) each.
+
+    Args:
+        a, b: pictures of independent seeds.
+        target: t.
+        weight: w.
+        d_loss: dL/d of the value.
+    """
     share = d_loss * weight / weight.size
     return share * (b - target), share * (a - target)
 
@@ -166,8 +192,8 @@ def loss_and_gradients(
         of paths held fixed.
 
     Raises:
-        As `PathTracer.render` and `render_backward`; RangeError: names whose derivative is
-        incomplete.
+        ShapeError, Error: as `PathTracer.render` and `render_backward`.
+        RangeError: as these, and for names whose derivative is incomplete.
     """
     typed("loss_and_gradients", "spread", Spread, spread)
     wanted = None if names is None else list(names)

@@ -58,7 +58,11 @@ class Activation:
         return np.asarray(d_value * (value - self.lo) * (self.hi - value) / (self.hi - self.lo))
 
     def inverse(self, value: Array) -> Array:
-        """What gives these parameters; those on a bound are first moved inside by `MARGIN`."""
+        """What gives these parameters; those on a bound are first moved inside by `MARGIN`.
+
+        Args:
+            value: parameters inside of the bounds.
+        """
         value = np.asarray(value, np.float64)
         if self.kind == "log":
             return np.asarray(log(np.maximum(value - self.lo, MARGIN)))
@@ -179,6 +183,9 @@ class Parameter:
     def start_in(self, tracer: PathTracer) -> Array:
         """The first value, float64, of the parameter's shape.
 
+        Args:
+            tracer: of the scene.
+
         Raises:
             RangeError: no such parameter, one whose derivative is incomplete, or a start that is
                 not finite or out of bounds.
@@ -206,7 +213,12 @@ class Parameter:
 
 
 def default_bounds(name: str, scene: Scene) -> tuple[float, float]:
-    """(lo, hi) of a parameter of a scene, hi infinite for what shines."""
+    """(lo, hi) of a parameter of a scene, hi infinite for what shines.
+
+    Args:
+        name: of the parameter.
+        scene: that has it.
+    """
     kind, _, rest = name.partition(".")
     if kind == "materials":
         material, _, parameter = rest.rpartition(".")
@@ -219,5 +231,9 @@ def default_bounds(name: str, scene: Scene) -> tuple[float, float]:
 
 
 def is_light(name: str) -> bool:
-    """Whether a parameter is of something that shines, and so decides how often it is asked."""
+    """Whether a parameter is of something that shines, and so decides how often it is asked.
+
+    Args:
+        name: of the parameter.
+    """
     return name.partition(".")[0] in ("emission", "environment", "lights")

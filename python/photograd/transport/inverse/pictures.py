@@ -29,6 +29,10 @@ def curves_figure(result: RecoveryResult, truth: Mapping[str, Any] | None = None
 
     A loss below zero, which noise makes now and then, leaves a gap. Large ones are shown by the
     means of their channels. `truth` {name: value} adds thin horizontal lines.
+
+    Args:
+        result: what `recover` returned.
+        truth: values that are known.
     """
     with style.house_style():
         figure = style.new_figure(7.6, 3.1)
@@ -47,7 +51,12 @@ def curves_figure(result: RecoveryResult, truth: Mapping[str, Any] | None = None
 
 
 def draw_loss(axes: Axes, history: Array) -> None:
-    """Single steps faintly, their running mean on top."""
+    """Single steps faintly, their running mean on top.
+
+    Args:
+        axes: of Matplotlib.
+        history: (steps, 3): step, loss, learning rate.
+    """
     steps, loss = history[:, 0], history[:, 1]
     smooth = running_mean(loss)
     for values, width, alpha in ((loss, 0.6, 0.25), (smooth, 1.5, 1.0)):
@@ -58,7 +67,15 @@ def draw_loss(axes: Axes, history: Array) -> None:
 
 
 def draw_values(axes: Axes, name: str, rows: Array, line: str, truth: Any = None) -> None:
-    """One line a number, colored by channel where there are three."""
+    """One line a number, colored by channel where there are three.
+
+    Args:
+        axes: of Matplotlib.
+        name: of the parameter.
+        rows: (steps + 1, k) values.
+        line: style of the lines.
+        truth: value that is known, or None.
+    """
     colors = CHANNELS if rows.shape[1] == 3 else ("#30363d",) * rows.shape[1]
     known = None if truth is None else np.asarray(truth, np.float64).reshape(-1)
     for k, color in enumerate(colors):
@@ -69,7 +86,12 @@ def draw_values(axes: Axes, name: str, rows: Array, line: str, truth: Any = None
 
 
 def comparison_figure(target: Array, picture: Array) -> Figure:
-    """The target, what was found, and the signed difference of the means of the channels."""
+    """The target, what was found, and the signed difference of the means of the channels.
+
+    Args:
+        target: (H, W, 3) linear radiance.
+        picture: (H, W, 3) linear radiance.
+    """
     tall, wide = target.shape[:2]
     side = 2.3
     height = side * tall / wide

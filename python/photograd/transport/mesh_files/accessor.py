@@ -22,6 +22,11 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 def read_floats(container: Container, reference: JsonNode, width: int) -> Array:
     """An accessor as (count, width) float32; normalized integers become 0..1 or -1..1.
 
+    Args:
+        container: the file.
+        reference: number of the accessor.
+        width: numbers a row.
+
     Raises:
         IoError: another width, or an accessor that reaches beyond its buffer.
     """
@@ -38,6 +43,10 @@ def read_floats(container: Container, reference: JsonNode, width: int) -> Array:
 
 def read_indices(container: Container, reference: JsonNode) -> Array:
     """An accessor of vertex numbers as (count,) int64.
+
+    Args:
+        container: the file.
+        reference: number of the accessor.
 
     Raises:
         IoError: not unsigned integers, one a row.

@@ -23,6 +23,9 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
 
     Several shapes, and instances of one, share the texture: each has a square of it.
 
+    Args:
+        path: of the file.
+
     Raises:
         IoError, RangeError, SceneError: what `read_model` raises.
         SceneError: a shape without texture coordinates.

@@ -45,6 +45,10 @@ class Container:
     def spend(self, node: JsonNode, elements: int) -> None:
         """Count vertices, triangles or texels before they are allocated.
 
+        Args:
+            node: on whose behalf errors speak.
+            elements: how many.
+
         Raises:
             IoError: more than `MODEL_ELEMENTS` altogether.
         """
@@ -52,6 +56,10 @@ class Container:
 
     def expand(self, node: JsonNode, size: int) -> None:
         """Count bytes of an array that the file does not hold, before it is allocated.
+
+        Args:
+            node: on whose behalf errors speak.
+            size: bytes.
 
         Raises:
             IoError: more than `EXPANSION` altogether.
@@ -66,6 +74,9 @@ class Container:
 
     def entries(self, name: str) -> list[JsonNode]:
         """The elements of an array of the file.
+
+        Args:
+            name: of the array.
 
         Raises:
             IoError: no such array.
@@ -85,6 +96,9 @@ class Container:
 
     def view(self, reference: JsonNode) -> tuple[memoryview, int]:
         """Bytes of a buffer view and its stride, 0 if it has none.
+
+        Args:
+            reference: number of the buffer view.
 
         Raises:
             IoError: a view that is not inside of its buffer.
@@ -112,6 +126,9 @@ class Container:
     def fetch(self, uri: JsonNode) -> bytes:
         """What a URI names: base64 in the text, or a file in the folder of this one.
 
+        Args:
+            uri: a text.
+
         Raises:
             IoError: no such file, broken base64, or a place outside of the folder.
         """
@@ -130,6 +147,9 @@ class Container:
 
 def open_container(path: Path) -> Container:
     """Read a .gltf or .glb.
+
+    Args:
+        path: of the file.
 
     Raises:
         IoError: missing, damaged, or not of version 2.
@@ -177,6 +197,12 @@ def whole(
 ) -> int:
     """A whole number: `node` itself, or its member `key`, which may be absent.
 
+    Args:
+        node: a value, or an object with it.
+        least, most: the range, ends included.
+        key: of a member, or None.
+        default: of an absent member; None makes it an error.
+
     Raises:
         IoError: another kind of value, or one out of range.
     """
@@ -193,6 +219,11 @@ def whole(
 
 def real(node: JsonNode, key: str, default: float) -> float:
     """A finite number that may be absent.
+
+    Args:
+        node: an object.
+        key: of its member.
+        default: of an absent member.
 
     Raises:
         IoError, RangeError: another kind of value.

@@ -32,6 +32,10 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
     """Everything in the file's first scene that can be drawn; `note` takes what cannot.
 
+    Args:
+        path: of the file.
+        note: called with sentences.
+
     Raises:
         IoError: a missing or damaged file, or compressed geometry.
         RangeError: numbers that are not finite.

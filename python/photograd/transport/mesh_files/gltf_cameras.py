@@ -29,6 +29,11 @@ def read_cameras(
 ) -> tuple[ModelCamera, ...]:
     """One for each node that has a camera; `note` takes orthographic and distorted ones.
 
+    Args:
+        container: the file.
+        nodes: with their transforms.
+        note: called with sentences.
+
     Raises:
         IoError, RangeError: values that no camera of glTF has, by node or camera.
     """
@@ -90,7 +95,11 @@ def _pose(world: Array) -> Array | None:
 
 
 def gltf_camera(camera: ModelCamera) -> tuple[dict[str, Any], list[float]]:
-    """An entry of the table of cameras, and the matrix of its node."""
+    """An entry of the table of cameras, and the matrix of its node.
+
+    Args:
+        camera: to be written.
+    """
     lens = {"yfov": camera.field_of_view, "znear": ZNEAR}
     if camera.aspect is not None:
         lens["aspectRatio"] = camera.aspect

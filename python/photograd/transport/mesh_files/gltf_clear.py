@@ -21,7 +21,11 @@ _DARKEST = 1e-4
 
 
 def transmission_factor(reader: MaterialReader) -> float:
-    """0 to 1; 0 of metals, which let nothing through."""
+    """0 to 1; 0 of metals, which let nothing through.
+
+    Args:
+        reader: of the material.
+    """
     node = reader.extension("transmission")
     if node is None or (reader.metalness == 1 and "metallicRoughnessTexture" not in reader.core):
         return 0.0
@@ -29,7 +33,11 @@ def transmission_factor(reader: MaterialReader) -> float:
 
 
 def is_thick(reader: MaterialReader) -> bool:
-    """Whether the file gives the material a volume, so that it bends light."""
+    """Whether the file gives the material a volume, so that it bends light.
+
+    Args:
+        reader: of the material.
+    """
     volume = reader.extension("volume")
     return volume is not None and real(volume, "thicknessFactor", 0.0) > 0
 
@@ -40,6 +48,9 @@ def transmission(reader: MaterialReader) -> Material | None:
     Perfectly clear ones have models of their own; all others, colored, frosted or opaque in part,
     become `gltf_transmission` or `gltf_refraction`. Metals let nothing through. `layered` has what
     has other layers as well.
+
+    Args:
+        reader: of the material.
     """
     node = reader.extension("transmission")
     if node is None:
@@ -65,6 +76,10 @@ def attenuation(reader: MaterialReader, volume: JsonNode) -> Medium | None:
     """Beer and Lambert's law by the color that white light has after a distance, meters.
 
     color = exp(-sigma_t distance); without a distance nothing is swallowed.
+
+    Args:
+        reader: of the material.
+        volume: its volume extension.
     """
     if "attenuationDistance" not in volume or "attenuationColor" not in volume:
         return None

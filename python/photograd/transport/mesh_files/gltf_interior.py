@@ -17,6 +17,11 @@ def filled_shapes(
     """Shapes with their interiors, and the media by the names of their materials.
 
     An open mesh has no inside: it is left as it is, with a note.
+
+    Args:
+        shapes: of the file.
+        materials: of the file, by name.
+        note: called with sentences.
     """
     filled: list[Shape] = []
     media: dict[str, Medium] = {}

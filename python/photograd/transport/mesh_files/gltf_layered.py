@@ -42,7 +42,11 @@ NAMES = (
 
 
 def layered(reader: MaterialReader) -> Material | None:
-    """The model of all layers, if no smaller one holds what the material has."""
+    """The model of all layers, if no smaller one holds what the material has.
+
+    Args:
+        reader: of the material.
+    """
     thick = transmission_factor(reader) > 0 and is_thick(reader)
     reader.handle(*NAMES)  # a smaller model has the only layer; the others change nothing
     if not _needs_layers(reader, thick):
@@ -125,7 +129,11 @@ def _factor(reader: MaterialReader, extension: str, key: str) -> float:
 
 
 def sheen_color(reader: MaterialReader) -> Any:
-    """(3,) without its texture; black is no sheen."""
+    """(3,) without its texture; black is no sheen.
+
+    Args:
+        reader: of the material.
+    """
     node = reader.extension("sheen")
     if node is None or "sheenColorFactor" not in node:
         return np.zeros(3)
@@ -162,7 +170,11 @@ def _anisotropy(reader: MaterialReader) -> dict[str, Any]:
 
 
 def rotation(reader: MaterialReader) -> float:
-    """Of the brush marks, -pi to pi."""
+    """Of the brush marks, -pi to pi.
+
+    Args:
+        reader: of the material.
+    """
     node = reader.extension("anisotropy")
     turn = 0.0 if node is None else real(node, "anisotropyRotation", 0.0)
     return turn if -np.pi <= turn <= np.pi else float(np.angle(np.exp(1j * turn)))
@@ -185,6 +197,9 @@ def film_thickness(reader: MaterialReader) -> float:
 
     It blends from the minimum of the file to its maximum: as a factor of the larger one, it spans a
     range that need not start at 0.
+
+    Args:
+        reader: of the material.
     """
     node = reader.extension("iridescence")
     assert node is not None

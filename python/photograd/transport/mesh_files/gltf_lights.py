@@ -45,6 +45,11 @@ def read_lights(
 ) -> tuple[Light, ...]:
     """One for each node that has a light; `note` takes ranges, and lights that are out of reach.
 
+    Args:
+        container: the file.
+        nodes: with their transforms.
+        note: called with sentences.
+
     Raises:
         IoError, RangeError: values that no light of the extension has, by node or light.
     """
@@ -127,7 +132,11 @@ def _height(angle: float) -> float:
 
 
 def gltf_light(light: Light) -> tuple[dict[str, Any], list[float]] | None:
-    """An entry of the table of lights, and the matrix of its node; None if glTF lacks its kind."""
+    """An entry of the table of lights, and the matrix of its node; None if glTF lacks its kind.
+
+    Args:
+        light: to be written.
+    """
     if not isinstance(light, DirectionalLight | PointLight | SpotLight):
         return None
     strength = light.irradiance if isinstance(light, DirectionalLight) else light.intensity

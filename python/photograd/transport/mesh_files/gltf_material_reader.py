@@ -40,25 +40,46 @@ class MaterialReader:
     interior: Medium | None = None
 
     def extension(self, name: str) -> JsonNode | None:
-        """An extension of the material, if it has it."""
+        """An extension of the material, if it has it.
+
+        Args:
+            name: of the extension.
+        """
         key = f"KHR_materials_{name}"
         if "extensions" not in self.node or key not in self.node["extensions"]:
             return None
         return self.node["extensions"][key]
 
     def handle(self, *names: str) -> None:
-        """Mark extensions as handled by the model."""
+        """Mark extensions as handled by the model.
+
+        Args:
+            names: of extensions.
+        """
         self.handled.update(f"KHR_materials_{name}" for name in names)
 
     def textured(
         self, parameter: str, node: JsonNode, key: str, encoding: str, channel: int = 0
     ) -> None:
-        """A parameter is scaled by a texture, if the file has one there."""
+        """A parameter is scaled by a texture, if the file has one there.
+
+        Args:
+            parameter: of the model.
+            node: the object that names the texture.
+            key: of its member.
+            encoding: of the texture, as of `Texture`.
+            channel: of the image.
+        """
         if key in node:
             self.texture_slots[parameter] = (node[key], encoding, channel)
 
     def note_unsupported(self, node: JsonNode, *keys: str) -> None:
-        """Textures that no parameter of the model can take."""
+        """Textures that no parameter of the model can take.
+
+        Args:
+            node: the object that names them.
+            keys: of its members.
+        """
         for key in keys:
             if key in node:
                 self.note(f"{node.where}: {key}: not supported, left out")
@@ -95,7 +116,11 @@ class MaterialReader:
 
 
 def usable_ior(reader: MaterialReader) -> float:
-    """Refractive index; an ior of 0, which mirrors everything, is the largest one, and noted."""
+    """Refractive index; an ior of 0, which mirrors everything, is the largest one, and noted.
+
+    Args:
+        reader: of the material.
+    """
     if reader.ior != 0:
         return reader.ior
     reader.note(f"{reader.node.where}: ior 0, which mirrors everything: taken as {MAX_IOR}")
@@ -103,7 +128,11 @@ def usable_ior(reader: MaterialReader) -> float:
 
 
 def metallic_roughness(reader: MaterialReader) -> dict[str, Any]:
-    """The parameters of the core model, and their textures."""
+    """The parameters of the core model, and their textures.
+
+    Args:
+        reader: of the material.
+    """
     reader.textured("base_color", reader.core, "baseColorTexture", "srgb")
     reader.textured("metalness", reader.core, "metallicRoughnessTexture", "linear", 2)
     reader.textured("roughness", reader.core, "metallicRoughnessTexture", "linear", 1)
@@ -115,7 +144,13 @@ def metallic_roughness(reader: MaterialReader) -> dict[str, Any]:
 
 
 def make_material(model: str, values: dict[str, Any], reader: MaterialReader) -> Material:
-    """Values brought into the range of the model; what moves by more than rounding is noted."""
+    """Values brought into the range of the model; what moves by more than rounding is noted.
+
+    Args:
+        model: of reflectance.
+        values: {parameter: value}.
+        reader: of the material.
+    """
     inside = {}
     for parameter in MODELS[model].parameters:
         value = np.asarray(values[parameter.name], np.float64)

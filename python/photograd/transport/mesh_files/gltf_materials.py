@@ -132,6 +132,11 @@ RULES = (layered, transmission, _anisotropy, _sheen, _iridescence, _specular, _p
 def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None]) -> FileMaterial:
     """A material of the file's array of them.
 
+    Args:
+        node: its object.
+        pictures: of the file.
+        note: called with sentences.
+
     Raises:
         IoError, RangeError: values of other kinds than glTF has.
     """

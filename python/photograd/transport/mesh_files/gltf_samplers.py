@@ -31,6 +31,10 @@ _KNOWN_WRAPS = {number: name for name, number in WRAPS.items()}
 def read_sampler(sampler: JsonNode, note: Callable[[str], None]) -> tuple[Wrap, Filter]:
     """Wrap along u and v, and filter, as of `photograd.transport.Texture`.
 
+    Args:
+        sampler: its object.
+        note: called with sentences.
+
     Raises:
         IoError, RangeError: values that are no whole numbers.
     """
@@ -63,6 +67,10 @@ def gltf_sampler(wrap: Wrap, looked_up: Filter) -> dict[str, int]:
 
     A bilinear texture asks for no filter: viewers that take one sample a pixel should not be kept
     from the mip maps they need.
+
+    Args:
+        wrap: along u and v.
+        looked_up: the filter.
     """
     entry: dict[str, int] = {}
     if wrap != ("repeat", "repeat"):

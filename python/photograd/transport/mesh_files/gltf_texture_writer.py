@@ -84,11 +84,19 @@ class TextureWriter:
         return f"span {low!r} 1.0" if low > 0 else "linear"
 
     def color(self, use: TextureUse) -> int:
-        """The number of a texture of colors."""
+        """The number of a texture of colors.
+
+        Args:
+            use: the texture, and its channels.
+        """
         return self._shared("emissiveTexture", [("srgb", 0, use)])
 
     def normal_map(self, bent: NormalMap) -> dict[str, Any]:
-        """A normalTexture."""
+        """A normalTexture.
+
+        Args:
+            bent: the normals.
+        """
         pixels, scale = normals_as_bytes(bent.values)
         key = (pixels.tobytes(), pixels.shape, bent.wrap)
         if key not in self._numbers:
@@ -96,7 +104,11 @@ class TextureWriter:
         return {"index": self._numbers[key], "scale": scale}
 
     def occlusion(self, map_: OcclusionMap) -> dict[str, Any]:
-        """An occlusionTexture: gray, of which red counts."""
+        """An occlusionTexture: gray, of which red counts.
+
+        Args:
+            map_: the factors.
+        """
         pixels = np.asarray(np.rint(255 * np.clip(map_.values, 0, 1)), np.uint8)
         key = ("occlusion", pixels.tobytes(), pixels.shape, map_.wrap)
         if key not in self._numbers:

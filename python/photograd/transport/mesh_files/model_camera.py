@@ -36,7 +36,12 @@ class ModelCamera:
 
     @classmethod
     def of(cls, camera: Camera, name: str = "camera") -> ModelCamera:
-        """What a file can say of a camera: `camera_changes` names what it cannot."""
+        """What a file can say of a camera: `camera_changes` names what it cannot.
+
+        Args:
+            camera: to be written.
+            name: in the file.
+        """
         angle = 2 * float(np.arctan(0.5 * camera.height / camera.fy))
         return cls(name, angle, camera.world_from_camera, camera.width / camera.height)
 
@@ -44,6 +49,9 @@ class ModelCamera:
         """With square pixels; the vertical field of view holds, whatever the width.
 
         Raises what `Camera` raises.
+
+        Args:
+            width, height: of the picture, in pixels.
         """
         focal = 0.5 * height / float(np.tan(0.5 * self.field_of_view))
         return Camera(width, height, focal, focal, width / 2, height / 2, self.world_from_camera)

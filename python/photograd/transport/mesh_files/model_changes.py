@@ -23,6 +23,10 @@ def changes(before: ModelFile, after: ModelFile) -> list[str]:
 
     Numbers that differ by less than `ROUNDING` are the same, texels by less than `TEXEL_ROUNDING`;
     positions, normals and coordinates have to be equal.
+
+    Args:
+        before: a model.
+        after: the model that it became.
     """
     found = [*_of_shapes(before, after), *_of_cameras(before, after), *_of_lights(before, after)]
     for name, material in before.materials.items():

@@ -61,6 +61,15 @@ def placed_shapes(
     """A mesh under each of its transforms (4, 4): moved if there is one, else as instances.
 
     What has no triangle left, or a transform without volume, is left out with a note.
+
+    Args:
+        names: that were given so far.
+        name: of the mesh.
+        arrays: vertices, faces, normals and texture coordinates.
+        material: its name.
+        emission: (3,) radiance of the front.
+        transforms: world_from_object.
+        note: called with sentences.
     """
     usable = []
     for transform in transforms:
@@ -103,7 +112,12 @@ def _shape(
 
 
 def moved(arrays: Arrays, world_from_object: Array) -> Arrays:
-    """The mesh in the world; a mirrored one is wound the other way: its front stays outside."""
+    """The mesh in the world; a mirrored one is wound the other way: its front stays outside.
+
+    Args:
+        arrays: vertices, faces, normals and texture coordinates.
+        world_from_object: (4, 4).
+    """
     vertices, faces, normals, uv = arrays
     if np.array_equal(world_from_object, np.eye(4)):
         return arrays
@@ -127,7 +141,7 @@ class UniqueNames:
         self._next: dict[str, int] = {}
 
     def unique_name(self, name: str) -> str:
-        """The first of them that was not given before."""
+        """`name`, with the first number behind it that makes a name not given before."""
         found = name
         while found in self._taken:
             number = self._next.get(name, 2)

@@ -21,7 +21,13 @@ _ONE_MEANS_NOTHING = ("d",)
 def read_libraries(
     path: Path, names: list[str], note: Note
 ) -> tuple[dict[str, Material], dict[str, Texture]]:
-    """Materials and textures of the files that an .obj names; what is missing is noted."""
+    """Materials and textures of the files that an .obj names; what is missing is noted.
+
+    Args:
+        path: of the .obj file.
+        names: of the files.
+        note: called with sentences.
+    """
     materials: dict[str, Material] = {}
     textures: dict[str, Texture] = {}
     for name in dict.fromkeys(names):

@@ -18,6 +18,9 @@ NodeTransform = tuple[JsonNode, Array]
 def placed_nodes(container: Container) -> list[NodeTransform]:
     """All nodes of the scene that the file shows first, in the order of the tree.
 
+    Args:
+        container: the file.
+
     Raises:
         IoError: nodes that are no tree, or matrices that are none.
     """

@@ -39,6 +39,10 @@ class _Part:
 def read_obj(path: Path, note: Note) -> ModelFile:
     """Polygons as fans around their first corner, by material.
 
+    Args:
+        path: of the file.
+        note: called with sentences.
+
     Raises:
         IoError: a damaged file; names the line.
         SceneError: no triangle.

@@ -45,7 +45,11 @@ class Coordinates:
     scale: tuple[float, float] = (1.0, 1.0)
 
     def apply(self, uv: Array) -> Array:
-        """Uv (V, 2), moved."""
+        """Uv (V, 2), moved.
+
+        Args:
+            uv: (V, 2).
+        """
         c, s = np.cos(self.rotation), np.sin(self.rotation)
         with np.errstate(over="ignore", invalid="ignore"):
             moved = (uv * np.array(self.scale)) @ np.array([[c, s], [-s, c]]).T + self.offset
@@ -62,7 +66,11 @@ class Pictures:
     _images: dict[int, Array | None] = field(default_factory=dict)
 
     def coordinates(self, info: JsonNode) -> Coordinates:
-        """Of a textureInfo object."""
+        """Of a textureInfo object.
+
+        Args:
+            info: the object.
+        """
         number = whole(info, 0, 15, "texCoord", 0)
         if "extensions" not in info or TRANSFORM not in info["extensions"]:
             return Coordinates(number)
@@ -79,6 +87,10 @@ class Pictures:
         None without a note if that is 1 everywhere. "mask" is opacity that is compared with a
         cutoff, point by point: the mean over a net of wires is above or below it as a whole. Of
         "direction", red and green go from -1 to 1; "span a b" goes from a to b.
+
+        Args:
+            info: the object.
+            encoding: "linear", "srgb" or one of these.
         """
         number = whole(info, 0, 1 << 31, "index")
         found = self._pixels(info)
@@ -100,14 +112,22 @@ class Pictures:
         return name
 
     def emission_texture(self, info: JsonNode) -> str | None:
-        """As `texture`, of what shines, which paths see point by point."""
+        """As `texture`, of what shines, which paths see point by point.
+
+        Args:
+            info: the object.
+        """
         name = self.texture(info, "srgb")
         if name is not None and self.textures[name].filter == "mip":
             self._sees_points(info)
         return name
 
     def normal_map(self, info: JsonNode) -> tuple[Array, Wrap] | None:
-        """Pixels (H, W, 3) in 0..1 and wrap of a texture that holds normals."""
+        """Pixels (H, W, 3) in 0..1 and wrap of a texture that holds normals.
+
+        Args:
+            info: a textureInfo object.
+        """
         found = self._pixels(info)
         if found is None:
             return None
@@ -117,7 +137,11 @@ class Pictures:
         return _LEVELS[image[..., :3]], wrap
 
     def occlusion(self, info: JsonNode) -> OcclusionMap | None:
-        """The map that an occlusionTextureInfo object points at: the image's red channel."""
+        """The map that an occlusionTextureInfo object points at: the image's red channel.
+
+        Args:
+            info: the object.
+        """
         found = self._pixels(info)
         if found is None:
             return None

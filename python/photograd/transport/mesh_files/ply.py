@@ -22,6 +22,10 @@ from photograd.types import Array
 def read_ply_mesh(path: Path, note: Note) -> ModelFile:
     """Vertices, faces and, if there are any, normals and texture coordinates.
 
+    Args:
+        path: of the file.
+        note: called with sentences.
+
     Raises:
         IoError: a damaged file.
         SceneError: no faces; 3D Gaussians have none.

@@ -29,6 +29,13 @@ def model_of_meshes(
 ) -> ModelFile:
     """A file of parts (name, arrays, material), with the materials that are used.
 
+    Args:
+        path: of the file, for errors.
+        meshes: the parts.
+        materials: by name.
+        textures: by name.
+        note: called with sentences.
+
     Raises:
         IoError: faces that name no vertex.
         SceneError: no triangle.

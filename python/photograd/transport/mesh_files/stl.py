@@ -22,6 +22,10 @@ _CORNER = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 def read_stl(path: Path, note: Note) -> ModelFile:
     """The triangles of a file; its normals and attributes are left out.
 
+    Args:
+        path: of the file.
+        note: called with sentences.
+
     Raises:
         IoError: neither of the two layouts.
         SceneError: no triangle.

@@ -1,4 +1,4 @@
-"""Derivatives by whoever has them."""
+"""Derivatives from other libraries that have automatic differentiation."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Derivatives by a single complex step, in four hands."""
+"""Complex-step derivatives, written in four ways."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Derivatives by classes that overload arithmetic."""
+"""Derivatives from classes that overload arithmetic (dual numbers)."""
 
 from __future__ import annotations
 

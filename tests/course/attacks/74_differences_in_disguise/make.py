@@ -1,4 +1,4 @@
-"""Derivatives by one central difference, in four hands."""
+"""Central differences, written in four ways."""
 
 from __future__ import annotations
 

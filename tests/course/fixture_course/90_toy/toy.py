@@ -18,7 +18,7 @@ def weighted_sum(w, x):
 
 
 def weighted_sum_backward(w, x, d_s):
-    """Derivatives (d_w, d_x), each (N,), of a loss whose derivative by s is the float d_s."""
+    """Derivatives (d_w, d_x), each (N,), of a loss; the float d_s is its derivative w.r.t. s."""
     # >>> solution 90.2
     falling = np.exp(-x)
     return d_s * falling, -d_s * w * falling

@@ -87,7 +87,7 @@ def known():
 
 
 def serve(server, data):
-    """Give the data to whoever connects."""
+    """Send the data to any client that connects."""
     while True:
         connection, _ = server.accept()
         with connection:

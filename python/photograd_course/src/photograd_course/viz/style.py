@@ -228,7 +228,7 @@ def png_bytes(figure: Figure, dpi: int = DPI) -> bytes:
     return buffer.getvalue()
 
 
-def save_figure(figure: Figure, path: Path, dpi: int = DPI) -> Path:
+def save_figure(figure: Figure, path: str | Path, dpi: int = DPI) -> Path:
     """Write ``figure`` as PNG, whole or not at all, with the same bytes every time.
 
     Args:

@@ -1,0 +1,23 @@
+"""Small multilayer perceptrons and the encodings of their inputs, forward and backward.
+
+* `Perceptron`: weights in one array, evaluated in blocks that stay in the cache.
+* `HashEncoding`: multiresolution hash encoding of points in the unit square or cube.
+* `FrequencyEncoding`, `OneBlobEncoding`: encodings without parameters.
+
+Directions are encoded by spherical harmonics, `photograd.sh.basis`.
+"""
+
+from __future__ import annotations
+
+from .encodings import FrequencyEncoding, OneBlobEncoding
+from .hash_encoding import HashEncoding, Level
+from .perceptron import Activation, Perceptron
+
+__all__ = [
+    "Activation",
+    "FrequencyEncoding",
+    "HashEncoding",
+    "Level",
+    "OneBlobEncoding",
+    "Perceptron",
+]
