@@ -8,6 +8,7 @@ recorded for the usual sizes: a library or processor that rounds a sine differen
 from __future__ import annotations
 
 import hashlib
+import itertools
 from typing import Any
 
 import numpy as np
@@ -331,5 +332,5 @@ def layer_weights(sizes: list[int], seed: int = 12) -> list[Array]:
     random = np.random.default_rng(seed)
     return [
         (random.standard_normal((gives, takes)) * np.sqrt(2.0 / takes)).astype(np.float32)
-        for takes, gives in zip(sizes[:-1], sizes[1:], strict=True)
+        for takes, gives in itertools.pairwise(sizes)
     ]

@@ -3,8 +3,6 @@
 # Plots an image, the photograph, and where the image is too bright or too dark.
 
 # %%
-from __future__ import annotations
-
 import numpy as np
 from first_gradient import loss, loss_gradient
 from matplotlib.figure import Figure

@@ -6,7 +6,8 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.style import house_style, signed_color_map
+from photograd_course.viz.handout import Fact, figures_of
+from photograd_course.viz.style import signed_color_map
 
 DPI = 160
 
@@ -21,32 +22,31 @@ def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
     gradient = module.loss_gradient(picture, photograph)
     bright, dark = picture > photograph, picture < photograph
     facts = {
-        "positive where the picture is too bright": bool((gradient[bright] > 0).all()),
-        "negative where it is too dark": bool((gradient[dark] < 0).all()),
-        "zero where both agree": bool((gradient[far] == 0).all() and far.sum() > 50),
+        "positive where the picture is too bright": Fact((gradient[bright] > 0).all()),
+        "negative where it is too dark": Fact((gradient[dark] < 0).all()),
+        "zero where both agree": Fact((gradient[far] == 0).all() and far.sum() > 50),
     }
     return _draw(picture, photograph, gradient), facts
 
 
 def _draw(picture: np.ndarray, photograph: np.ndarray, gradient: np.ndarray) -> Figure:
-    with house_style():
-        figure = Figure(figsize=(6.4, 1.95), layout="constrained")
-        top = float(np.abs(gradient).max())
-        panels = [
-            ("picture p", picture, "gray", 0.0, 1.0),
-            ("photograph q", photograph, "gray", 0.0, 1.0),
-            (r"$\partial L\,/\,\partial p$", gradient, signed_color_map(), -top, top),
-        ]
-        for k, (title, values, colors, low, high) in enumerate(panels):
-            axes = figure.add_subplot(1, 3, k + 1)
-            image = axes.imshow(values, cmap=colors, vmin=low, vmax=high, interpolation="nearest")
-            axes.set_title(title)
-            axes.set_xticks([])
-            axes.set_yticks([])
-        bar = figure.colorbar(image, ax=figure.axes, shrink=0.85, ticks=[-top, 0, top])
-        bar.ax.set_yticklabels(["too dark", "0", "too bright"])
+    figure = Figure(figsize=(6.4, 1.95), layout="constrained")
+    top = float(np.abs(gradient).max())
+    panels = [
+        ("picture p", picture, "gray", 0.0, 1.0),
+        ("photograph q", photograph, "gray", 0.0, 1.0),
+        (r"$\partial L\,/\,\partial p$", gradient, signed_color_map(), -top, top),
+    ]
+    for k, (title, values, colors, low, high) in enumerate(panels):
+        axes = figure.add_subplot(1, 3, k + 1)
+        image = axes.imshow(values, cmap=colors, vmin=low, vmax=high, interpolation="nearest")
+        axes.set_title(title)
+        axes.set_xticks([])
+        axes.set_yticks([])
+    bar = figure.colorbar(image, ax=figure.axes, shrink=0.85, ticks=[-top, 0, top])
+    bar.ax.set_yticklabels(["too dark", "0", "too bright"])
     return figure
 
 
-FIGURES = {"fig1_gradient": fig1_gradient}
+FIGURES = figures_of(fig1_gradient)
 RED = {"fig1_gradient": "sign"}

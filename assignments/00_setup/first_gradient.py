@@ -6,15 +6,20 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+# Arrays and their shapes; float64 where nothing else is said.
+Image = Annotated[np.ndarray, "H W"]
 
-def loss(picture: np.ndarray, photograph: np.ndarray) -> float:
+
+def loss(picture: Image, photograph: Image) -> float:
     """Mean squared error, Eq. (1), of two images (H, W), float64, of one unit; in its square."""
     return float(np.mean((picture - photograph) ** 2))
 
 
-def loss_gradient(picture: np.ndarray, photograph: np.ndarray) -> np.ndarray:
+def loss_gradient(picture: Image, photograph: Image) -> Image:
     """Derivative of `loss` with respect to each pixel of `picture`, Eq. (2): (H, W), float64."""
     # >>> solution 00.1
     return 2.0 * (picture - photograph) / picture.size

@@ -1,7 +1,5 @@
 """Right answers of the generated questions; `reference` is the solution."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,14 +10,19 @@ point included. Never change a given array: make a new one.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 
-Loss = Callable[[np.ndarray], float]  # (N,) -> float
-Gradient = Callable[[np.ndarray], np.ndarray]  # (N,) -> (N,)
+# Arrays and their shapes; float64 where nothing else is said.
+Point = Annotated[np.ndarray, "N"]
+Points = Annotated[np.ndarray, "steps N"]  # of a walk, the start first
+Values = Annotated[np.ndarray, "steps"]
+Loss = Callable[[Point], float]
+Gradient = Callable[[Point], Point]
 
 
-def numeric_derivative(f: Loss, x: np.ndarray, eps: float) -> np.ndarray:
+def numeric_derivative(f: Loss, x: Point, eps: float) -> Point:
     """The gradient of f at x by central finite differences, Eq. (3).
 
     Args:
@@ -40,7 +45,7 @@ def numeric_derivative(f: Loss, x: np.ndarray, eps: float) -> np.ndarray:
 
 def gd_1d(
     f: Callable[[float], float], df: Callable[[float], float], x0: float, tau: float, n: int
-) -> tuple[np.ndarray, np.ndarray, bool]:
+) -> tuple[Values, Values, bool]:
     """n steps of gradient descent on a function of one variable, Eq. (5), and a flag, Eq. (8).
 
     Args:
@@ -63,9 +68,7 @@ def gd_1d(
     # <<< solution
 
 
-def gd_nd(
-    f: Loss, grad: Gradient, x0: np.ndarray, tau: float, n: int
-) -> tuple[np.ndarray, np.ndarray, bool]:
+def gd_nd(f: Loss, grad: Gradient, x0: Point, tau: float, n: int) -> tuple[Points, Values, bool]:
     """n steps of gradient descent on a function of N variables, Eq. (9).
 
     Args:
@@ -88,7 +91,7 @@ def gd_nd(
     # <<< solution
 
 
-def momentum(grad: Gradient, x0: np.ndarray, tau: float, beta: float, n: int) -> np.ndarray:
+def momentum(grad: Gradient, x0: Point, tau: float, beta: float, n: int) -> Points:
     """n steps of gradient descent with momentum, Eqs. (12) and (13), from rest.
 
     Args:
@@ -112,13 +115,13 @@ def momentum(grad: Gradient, x0: np.ndarray, tau: float, beta: float, n: int) ->
 
 def adam(
     grad: Gradient,
-    x0: np.ndarray,
+    x0: Point,
     tau: float,
     n: int,
     beta1: float = 0.9,
     beta2: float = 0.999,
     eps: float = 1e-8,
-) -> np.ndarray:
+) -> Points:
     """n steps of Adam, Eqs. (16) to (20), both moments starting at zero.
 
     Args:
@@ -149,8 +152,8 @@ def adam(
 def backtracking(
     f: Loss,
     grad: Gradient,
-    x: np.ndarray,
-    d: np.ndarray,
+    x: Point,
+    d: Point,
     tau0: float = 1.0,
     c: float = 1e-4,
     shrink: float = 0.5,

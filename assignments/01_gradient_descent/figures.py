@@ -3,13 +3,10 @@
 `module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
 """
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 from photograd_course.viz import style
+from photograd_course.viz.handout import Fact, figures_of
 
 PURPLE = "#542788"
 BLUE, RED_, ORANGE, GRAY, INK = style.BLUE, style.RED, style.ORANGE, style.GRAY, style.INK
@@ -50,26 +47,33 @@ def fig1_two_errors(module):
     wide, narrow = eps >= 1e-3, eps <= 1e-8
     best = float(eps[np.argmin(central)])
     facts = {
-        "central differences have slope 2": (_slope(eps[wide], central[wide]), 1.9, 2.1),
-        "forward differences have slope 1": (_slope(eps[wide], forward[wide]), 0.9, 1.1),
-        "below 1e-8 the error grows as 1/eps": (_slope(eps[narrow], central[narrow]), -1.3, -0.7),
-        "central ones are best near 1e-5": (float(np.log10(best)), -6.5, -4.0),
-        "there they are a hundred times better": (float(forward.min() / central.min()), 100.0, 1e6),
+        "central differences have slope 2": Fact(
+            _slope(eps[wide], central[wide]), 1.9, 2.1, red="forward_difference"
+        ),
+        "forward differences have slope 1": Fact(
+            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="computed here"
+        ),
+        "below 1e-8 the error grows as 1/eps": Fact(
+            _slope(eps[narrow], central[narrow]), -1.3, -0.7, red="missing_half"
+        ),
+        "central ones are best near 1e-5": Fact(np.log10(best), -6.5, -4.0, red="five_point"),
+        "there they are a hundred times better": Fact(
+            forward.min() / central.min(), 100.0, 1e6, red="forward_difference"
+        ),
     }
-    with style.house_style():
-        figure, (axes,) = _panels([5.2], 2.9)
-        axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
-        axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
-        guide = np.array([3e-4, 3e-1])
-        axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
-        axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
-        axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
-        axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
-        axes.annotate("rounding error: slope -1", (3e-11, 2e-4), color=style.GUIDE)
-        axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
-        axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
-        axes.legend(loc="lower left")
-        axes.grid(visible=True)
+    figure, (axes,) = _panels([5.2], 2.9)
+    axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
+    axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
+    guide = np.array([3e-4, 3e-1])
+    axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
+    axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
+    axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
+    axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
+    axes.annotate("rounding error: slope -1", (3e-11, 2e-4), color=style.GUIDE)
+    axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
+    axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
+    axes.legend(loc="lower left")
+    axes.grid(visible=True)
     return figure, facts
 
 
@@ -80,36 +84,41 @@ def fig2_step_lengths(module):
     walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
     x = {r: walk[0] for r, walk in walks.items()}
     facts = {
-        "at 0.2 the points stay on one side": bool((x[0.2] > 0.0).all()),
-        "at 0.2 the distance falls": bool((np.diff(np.abs(x[0.2])) < 0.0).all()),
-        "at 1 the first step reaches the minimum": bool(x[1.0][1] == 0.0),
-        "at 1.8 the sides alternate": bool((x[1.8][1:] * x[1.8][:-1] < 0.0).all()),
-        "0.2 and 1.8 are equally fast": (float(np.abs(x[1.8][-1] / x[0.2][-1])), 0.999, 1.001),
-        "at 2 the distance stays 1": bool((np.abs(x[2.0]) == 1.0).all()),
-        "at 2.1 it has grown tenfold": (float(np.abs(x[2.1][-1])), 9.0, 11.0),
-        "only 2.1 is flagged as wrong": [w[2] for w in walks.values()] == [False] * 4 + [True],
+        "at 0.2 the points stay on one side": Fact((x[0.2] > 0.0).all(), red="no_tau"),
+        "at 0.2 the distance falls": Fact((np.diff(np.abs(x[0.2])) < 0.0).all(), red="uphill"),
+        "at 1 the first step reaches the minimum": Fact(x[1.0][1] == 0.0, red="uphill"),
+        "at 1.8 the sides alternate": Fact(
+            (x[1.8][1:] * x[1.8][:-1] < 0.0).all(), red="stale_gradient"
+        ),
+        "0.2 and 1.8 are equally fast": Fact(
+            np.abs(x[1.8][-1] / x[0.2][-1]), 0.999, 1.001, red="clipped_step"
+        ),
+        "at 2 the distance stays 1": Fact((np.abs(x[2.0]) == 1.0).all(), red="clipped_step"),
+        "at 2.1 it has grown tenfold": Fact(np.abs(x[2.1][-1]), 9.0, 11.0, red="clipped_step"),
+        "only 2.1 is flagged as wrong": Fact(
+            [w[2] for w in walks.values()] == [False] * 4 + [True], red="clipped_step"
+        ),
     }
-    with style.house_style():
-        figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
-        steps = np.arange(n + 1)
-        looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
-        for r, (color, mark) in looks.items():
-            size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
-            left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
-            right.semilogy(
-                steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
-            )
-        left.axhline(0.0, color=GRAY, lw=0.8)
-        left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
-        left.set_title("points")
-        right.set(xlabel="step k", ylim=(2e-3, 60))
-        right.set_title("distance to the minimum")
-        right.legend(
-            title="tau lambda", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2
+    figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
+    steps = np.arange(n + 1)
+    looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
+    for r, (color, mark) in looks.items():
+        size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
+        left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
+        right.semilogy(
+            steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
         )
-        for axes in (left, right):
-            axes.grid(visible=True)
-            axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
+    left.axhline(0.0, color=GRAY, lw=0.8)
+    left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
+    left.set_title("points")
+    right.set(xlabel="step k", ylim=(2e-3, 60))
+    right.set_title("distance to the minimum")
+    right.legend(
+        title="tau lambda", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2
+    )
+    for axes in (left, right):
+        axes.grid(visible=True)
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
     return figure, facts
 
 
@@ -128,44 +137,53 @@ def fig3_two_valleys(module):
     long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
     near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
     facts = {
-        "from 0 the run ends on the left": (float(short_left[-1] - left_end), -1e-6, 1e-6),
-        "from 0.1 it ends on the right": (float(short_right[-1] - right_end), -1e-6, 1e-6),
-        "the local maximum lies between 0 and 0.1": (float(hump), 0.0, 0.1),
-        "the run from 0 ends lower": bool(f(short_left[-1]) < f(short_right[-1])),
-        "from 1.7 with 0.05 it ends on the right": (float(near[-1] - right_end), -1e-6, 1e-6),
-        "from 1.7 with 0.15 the first step crosses the maximum": bool(long[1] < hump),
-        "and ends on the left": (float(long[-1] - left_end), -1e-6, 1e-6),
+        "from 0 the run ends on the left": Fact(
+            short_left[-1] - left_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "from 0.1 it ends on the right": Fact(
+            short_right[-1] - right_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "the local maximum lies between 0 and 0.1": Fact(
+            hump, 0.0, 0.1, held="a root of the derivative"
+        ),
+        "the run from 0 ends lower": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
+        "from 1.7 with 0.05 it ends on the right": Fact(
+            near[-1] - right_end, -1e-6, 1e-6, red="no_tau"
+        ),
+        "from 1.7 with 0.15 the first step crosses the maximum": Fact(
+            long[1] < hump, red="clipped_step"
+        ),
+        "and ends on the left": Fact(long[-1] - left_end, -1e-6, 1e-6, red="stale_gradient"),
     }
     grid = np.linspace(-1.65, 1.8, 300)
-    with style.house_style():
-        figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
-        shown = (
-            (
-                "small learning rate, tau = 0.05",
-                (short_left, BLUE, "o", "from 0"),
-                (short_right, ORANGE, "s", "from 0.1"),
-            ),
-            ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
-        )
-        for axes, (title, *walks) in zip(panels, shown, strict=True):
-            axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
-            for x, color, mark, label in walks:
-                axes.plot(
-                    x,
-                    [f(each) for each in x],
-                    f"{mark}-",
-                    color=color,
-                    ms=4,
-                    lw=0.8,
-                    label=label,
-                    mec="white",
-                    mew=0.5,
-                )
-            axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
-            axes.set_title(title)
-            axes.legend(loc="upper center")
-            axes.grid(visible=True)
-        panels[0].set_ylabel("f(x)")
+    figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
+    shown = (
+        (
+            "small learning rate, tau = 0.05",
+            (short_left, BLUE, "o", "from 0"),
+            (short_right, ORANGE, "s", "from 0.1"),
+        ),
+        ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
+    )
+    for axes, (title, *walks) in zip(panels, shown, strict=True):
+        axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
+        for x, color, mark, label in walks:
+            axes.plot(
+                x,
+                [f(each) for each in x],
+                f"{mark}-",
+                color=color,
+                ms=4,
+                lw=0.8,
+                label=label,
+                mec="white",
+                mew=0.5,
+            )
+        axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
+        axes.set_title(title)
+        axes.legend(loc="upper center")
+        axes.grid(visible=True)
+    panels[0].set_ylabel("f(x)")
     return figure, facts
 
 
@@ -192,48 +210,48 @@ def fig4_zigzag(module):
     size = {name: np.linalg.norm(x, axis=1) for name, x in (("fixed", fixed), ("ball", ball))}
     rate = float((size["fixed"][-1] / size["fixed"][-21]) ** (1 / 20))
     facts = {
-        "the steep coordinate changes sign in each step": bool(
-            (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all()
+        "the steep coordinate changes sign in each step": Fact(
+            (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all(), red="unit_steps"
         ),
-        "the flat one converges from one side": bool((zigzag[:, 0] < 0.0).all()),
-        "the factor per step is 19/21 within 2 %": (rate * 21.0 / 19.0, 0.98, 1.02),
-        "just above the bound it diverges": bool(wrong[2]),
-        "after 40 steps momentum is sixty thousand times nearer": (
-            float(size["fixed"][-1] / size["ball"][-1]),
-            5.5e4,
-            6.5e4,
+        "the flat one converges from one side": Fact((zigzag[:, 0] < 0.0).all(), red="unit_steps"),
+        "the factor per step is 19/21 within 2 %": Fact(
+            rate * 21.0 / 19.0, 0.98, 1.02, red="aliased_trail"
         ),
-        "tau is 0.134": (float(tau), 0.1335, 0.1345),
-        "beta is 0.403": (float(beta), 0.4025, 0.4035),
-        "the roots of Eq. (15) coincide for both curvatures": (
-            float(np.abs((1.0 + beta - tau * BOWL) ** 2 - 4.0 * beta).max()),
+        "just above the bound it diverges": Fact(wrong[2], red="unit_steps"),
+        "after 40 steps momentum is sixty thousand times nearer": Fact(
+            size["fixed"][-1] / size["ball"][-1], 5.5e4, 6.5e4, red="forgets_velocity"
+        ),
+        "tau is 0.134": Fact(tau, 0.1335, 0.1345, held="chosen by the figure"),
+        "beta is 0.403": Fact(beta, 0.4025, 0.4035, held="chosen by the figure"),
+        "the roots of Eq. (15) coincide for both curvatures": Fact(
+            np.abs((1.0 + beta - tau * BOWL) ** 2 - 4.0 * beta).max(),
             0.0,
             1e-12,
+            held="follows from tau and beta",
         ),
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    with style.house_style():
-        figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
-        for axes, walk, color, mark, title in (
-            (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
-            (b, ball, BLUE, "o", "momentum, beta = 0.403"),
-        ):
-            axes.contour(
-                x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
-            )
-            axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
-            axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-            axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
-            axes.set_title(title)
-        a.set_ylabel("steep coordinate")
-        b.tick_params(labelleft=False)
-        steps = np.arange(n + 1)
-        c.semilogy(steps, size["fixed"], color=ORANGE)
-        c.semilogy(steps, size["ball"], color=BLUE)
-        c.set_title("distance")
-        c.set_xlabel("step k")
-        c.grid(visible=True)
+    figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
+    for axes, walk, color, mark, title in (
+        (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
+        (b, ball, BLUE, "o", "momentum, beta = 0.403"),
+    ):
+        axes.contour(
+            x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
+        )
+        axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
+        axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
+        axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
+        axes.set_title(title)
+    a.set_ylabel("steep coordinate")
+    b.tick_params(labelleft=False)
+    steps = np.arange(n + 1)
+    c.semilogy(steps, size["fixed"], color=ORANGE)
+    c.semilogy(steps, size["ball"], color=BLUE)
+    c.set_title("distance")
+    c.set_xlabel("step k")
+    c.grid(visible=True)
     return figure, facts
 
 
@@ -252,65 +270,58 @@ def fig5_adam(module):
     apart = float(np.abs(walks[1.0] - walks[1000.0]).max())
     first = lengths[1.0][0]
     facts = {
-        "the first step is tau in each coordinate": (float(np.abs(first / tau - 1).max()), 0, 1e-6),
-        "a thousandfold gradient moves no point by more than 1e-5": (apart, 0.0, 1e-5),
-        "in no coordinate is a step longer than 1.2 tau": (
-            float(lengths[1.0].max() / tau),
-            0.0,
-            1.2,
+        "the first step is tau in each coordinate": Fact(
+            np.abs(first / tau - 1).max(), 0, 1e-6, red="no_second_correction"
         ),
-        "gradient descent at its best rate is nearer all the way": bool(
-            (size["gradient descent"][1:] < size["Adam"][1:]).all()
+        "a thousandfold gradient moves no point by more than 1e-5": Fact(
+            apart, 0.0, 1e-5, red="no_square_root"
         ),
-        "after 100 steps it is a hundred times nearer": (
-            float(size["Adam"][100] / size["gradient descent"][100]),
-            100.0,
-            130.0,
+        "in no coordinate is a step longer than 1.2 tau": Fact(
+            lengths[1.0].max() / tau, 0.0, 1.2, red="no_second_correction"
         ),
-        "after 200 steps it is within 0.001 of the minimum": (
-            float(np.linalg.norm(walks[1.0][-1])),
-            0.0,
-            1e-3,
+        "gradient descent at its best rate is nearer all the way": Fact(
+            (size["gradient descent"][1:] < size["Adam"][1:]).all(), red="unit_steps"
         ),
-        "the flat and the steep coordinate have equal first steps": (
-            float(first[0] / first[1]),
-            0.999,
-            1.001,
+        "after 100 steps it is a hundred times nearer": Fact(
+            size["Adam"][100] / size["gradient descent"][100], 100.0, 130.0, red="unit_steps"
+        ),
+        "after 200 steps it is within 0.001 of the minimum": Fact(
+            np.linalg.norm(walks[1.0][-1]), 0.0, 1e-3, red="swapped_betas"
+        ),
+        "the flat and the steep coordinate have equal first steps": Fact(
+            first[0] / first[1], 0.999, 1.001, red="shared_scale"
         ),
     }
     x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    with style.house_style():
-        figure, (a, b, c) = _panels([2.7, 1.6, 1.4], 2.2, gap=0.62)
-        a.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
-        a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
-        a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
-        a.plot(
-            *walks[1000.0][:80:6].T,
-            "D",
-            color=PURPLE,
-            ms=5,
-            mfc="none",
-            mew=0.9,
-            label="Adam, gradient times 1000",
-        )
-        a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-        a.set(
-            xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate"
-        )
-        a.set_title("iterates")
-        a.legend(loc="lower right")
-        b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
-        b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
-        b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
-        b.set_title("steps of Adam")
-        b.legend(loc="upper right")
-        c.semilogy(size["Adam"], color=BLUE)
-        c.semilogy(size["gradient descent"], color=ORANGE)
-        c.set_title("distance")
-        c.set_xlabel("step k")
-        for axes in (b, c):
-            axes.grid(visible=True)
+    figure, (a, b, c) = _panels([2.7, 1.6, 1.4], 2.2, gap=0.62)
+    a.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
+    a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
+    a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
+    a.plot(
+        *walks[1000.0][:80:6].T,
+        "D",
+        color=PURPLE,
+        ms=5,
+        mfc="none",
+        mew=0.9,
+        label="Adam, gradient times 1000",
+    )
+    a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
+    a.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate")
+    a.set_title("iterates")
+    a.legend(loc="lower right")
+    b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
+    b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
+    b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
+    b.set_title("steps of Adam")
+    b.legend(loc="upper right")
+    c.semilogy(size["Adam"], color=BLUE)
+    c.semilogy(size["gradient descent"], color=ORANGE)
+    c.set_title("distance")
+    c.set_xlabel("step k")
+    for axes in (b, c):
+        axes.grid(visible=True)
     return figure, facts
 
 
@@ -340,119 +351,42 @@ def fig6_armijo(module):
     bound = [f(x) + c * each * slope for each in tried]
     refused = [along(t) > b for t, b in zip(tried, bound, strict=True)]
     facts = {
-        "all tries but the last lie above the line": refused == [True] * (len(tried) - 1) + [False],
-        "it tries 1.6, 0.96, 0.576 and 0.3456": bool(
-            len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9)
+        "all tries but the last lie above the line": Fact(
+            refused == [True] * (len(tried) - 1) + [False], red="no_promise"
         ),
-        "the last try is the result": (float(tau / tried[-1]), 0.999999, 1.000001),
-        "the loss falls": bool(along(tau) < f(x)),
-        "with c = 1e-4 it would have taken 0.576": (float(cheap), 0.5759, 0.5761),
+        "it tries 1.6, 0.96, 0.576 and 0.3456": Fact(
+            len(tried) == 4 and np.allclose(tried, 1.6 * 0.6 ** np.arange(4.0), rtol=1e-9),
+            red="ignores_tau0",
+        ),
+        "the last try is the result": Fact(
+            tau / tried[-1], 0.999999, 1.000001, red="one_too_short"
+        ),
+        "the loss falls": Fact(along(tau) < f(x), red="wrong_promise"),
+        "with c = 1e-4 it would have taken 0.576": Fact(cheap, 0.5759, 0.5761, red="one_too_short"),
     }
     grid = np.linspace(0.0, 1.35, 300)
-    with style.house_style():
-        figure, (axes,) = _panels([5.2], 2.7)
-        axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
-        axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
-        axes.plot(
-            grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001"
-        )
-        shown = [t for t in tried if t < 1.35]
-        axes.plot(
-            shown[:-1],
-            [along(t) for t in shown[:-1]],
-            "X",
-            color=RED_,
-            ms=8,
-            mec="white",
-            label="tried and rejected",
-        )
-        axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
-        axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
-        axes.set(xlabel="step size tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
-        axes.legend(loc="upper center", ncols=2)
-        axes.grid(visible=True)
+    figure, (axes,) = _panels([5.2], 2.7)
+    axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
+    axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
+    axes.plot(grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001")
+    shown = [t for t in tried if t < 1.35]
+    axes.plot(
+        shown[:-1],
+        [along(t) for t in shown[:-1]],
+        "X",
+        color=RED_,
+        ms=8,
+        mec="white",
+        label="tried and rejected",
+    )
+    axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
+    axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
+    axes.set(xlabel="step size tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
+    axes.legend(loc="upper center", ncols=2)
+    axes.grid(visible=True)
     return figure, facts
 
 
-FIGURES = {
-    "fig1_two_errors": fig1_two_errors,
-    "fig2_step_lengths": fig2_step_lengths,
-    "fig3_two_valleys": fig3_two_valleys,
-    "fig4_zigzag": fig4_zigzag,
-    "fig5_adam": fig5_adam,
-    "fig6_armijo": fig6_armijo,
-}
-# For each fact a mutant that makes it untrue, and for each figure one of them.
-RED_FACTS = {
-    "fig1_two_errors": {
-        "central differences have slope 2": "forward_difference",
-        "below 1e-8 the error grows as 1/eps": "missing_half",
-        "central ones are best near 1e-5": "five_point",
-        "there they are a hundred times better": "forward_difference",
-    },
-    "fig2_step_lengths": {
-        "at 0.2 the points stay on one side": "no_tau",
-        "at 0.2 the distance falls": "uphill",
-        "at 1 the first step reaches the minimum": "uphill",
-        "at 1.8 the sides alternate": "stale_gradient",
-        "0.2 and 1.8 are equally fast": "clipped_step",
-        "at 2 the distance stays 1": "clipped_step",
-        "at 2.1 it has grown tenfold": "clipped_step",
-        "only 2.1 is flagged as wrong": "clipped_step",
-    },
-    "fig3_two_valleys": {
-        "from 0 the run ends on the left": "uphill",
-        "from 0.1 it ends on the right": "uphill",
-        "the run from 0 ends lower": "uphill",
-        "from 1.7 with 0.05 it ends on the right": "no_tau",
-        "from 1.7 with 0.15 the first step crosses the maximum": "clipped_step",
-        "and ends on the left": "stale_gradient",
-    },
-    "fig4_zigzag": {
-        "the steep coordinate changes sign in each step": "unit_steps",
-        "the flat one converges from one side": "unit_steps",
-        "the factor per step is 19/21 within 2 %": "aliased_trail",
-        "just above the bound it diverges": "unit_steps",
-        "after 40 steps momentum is sixty thousand times nearer": "forgets_velocity",
-    },
-    "fig5_adam": {
-        "the first step is tau in each coordinate": "no_second_correction",
-        "a thousandfold gradient moves no point by more than 1e-5": "no_square_root",
-        "in no coordinate is a step longer than 1.2 tau": "no_second_correction",
-        "gradient descent at its best rate is nearer all the way": "unit_steps",
-        "after 100 steps it is a hundred times nearer": "unit_steps",
-        "after 200 steps it is within 0.001 of the minimum": "swapped_betas",
-        "the flat and the steep coordinate have equal first steps": "shared_scale",
-    },
-    "fig6_armijo": {
-        "all tries but the last lie above the line": "no_promise",
-        "it tries 1.6, 0.96, 0.576 and 0.3456": "ignores_tau0",
-        "the last try is the result": "one_too_short",
-        "the loss falls": "wrong_promise",
-        "with c = 1e-4 it would have taken 0.576": "one_too_short",
-    },
-}
-RED = {figure: next(iter(facts.values())) for figure, facts in RED_FACTS.items()}
-# Facts that do not depend on the module: what its results are compared with.
-HELD = {
-    "fig1_two_errors": {"forward differences have slope 1": "computed here"},
-    "fig3_two_valleys": {"the local maximum lies between 0 and 0.1": "a root of the derivative"},
-    "fig4_zigzag": {
-        "tau is 0.134": "chosen by the figure",
-        "beta is 0.403": "chosen by the figure",
-        "the roots of Eq. (15) coincide for both curvatures": "follows from tau and beta",
-    },
-}
-
-
-def main() -> None:
-    """Draw all figures into figures/."""
-    import descent
-
-    folder = Path(__file__).parent / "figures"
-    for name, make in FIGURES.items():
-        style.save_figure(make(descent)[0], folder / f"{name}.png", style.HANDOUT_DPI)
-
-
-if __name__ == "__main__":
-    main()
+FIGURES = figures_of(
+    fig1_two_errors, fig2_step_lengths, fig3_two_valleys, fig4_zigzag, fig5_adam, fig6_armijo
+)

@@ -4,8 +4,6 @@ Runs beside your `engine.py`; do not change or submit it. A node is known by its
 place in a list; inputs stand first, and every node after those that it uses.
 """
 
-from __future__ import annotations
-
 import engine
 import numpy as np
 

@@ -11,8 +11,13 @@ far you are. Equations are those of the handout.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vector = Annotated[np.ndarray, "N"]
 
 
 class Value:
@@ -29,21 +34,21 @@ class Value:
         self.grad = 0.0
         self.inputs = inputs
 
-    def __add__(self, other):
+    def __add__(self, other: Value | float) -> Value:
         """self + other; `other` may be a plain number. Eq. (5)."""
         other = as_value(other)
         # >>> solution 02.1
         return Value(self.data + other.data, ((self, 1.0), (other, 1.0)))
         # <<< solution
 
-    def __mul__(self, other):
+    def __mul__(self, other: Value | float) -> Value:
         """self * other; `other` may be a plain number. Eq. (6)."""
         other = as_value(other)
         # >>> solution 02.1
         return Value(self.data * other.data, ((self, other.data), (other, self.data)))
         # <<< solution
 
-    def maximum(self, other):
+    def maximum(self, other: Value | float) -> Value:
         """The larger of self and other; at a tie `other` gets the derivative. Eq. (7)."""
         other = as_value(other)
         # >>> solution 02.2
@@ -52,20 +57,20 @@ class Value:
         return Value(larger, ((self, wins), (other, 1.0 - wins)))
         # <<< solution
 
-    def exp(self):
+    def exp(self) -> Value:
         """The exponential of self. Eq. (8)."""
         # >>> solution 02.3
         grown = math.exp(self.data)
         return Value(grown, ((self, grown),))
         # <<< solution
 
-    def log(self):
+    def log(self) -> Value:
         """The natural logarithm of self, which must be positive. Eq. (9)."""
         # >>> solution 02.3
         return Value(math.log(self.data), ((self, 1.0 / self.data),))
         # <<< solution
 
-    def __pow__(self, n):
+    def __pow__(self, n: float) -> Value:
         """self to the power of a plain number n, which is no input of the graph. Eq. (10)."""
         # >>> solution 02.3
         return Value(self.data**n, ((self, n * self.data ** (n - 1)),))
@@ -107,7 +112,7 @@ def as_value(number):
     return number if isinstance(number, Value) else Value(number)
 
 
-def topo_order(root):
+def topo_order(root: Value) -> list[Value]:
     """A topological order of the values that `root` depends on: inputs precede their users.
 
     Args:
@@ -133,7 +138,7 @@ def topo_order(root):
     # <<< solution
 
 
-def backward(root, seed=1.0):
+def backward(root: Value, seed: float = 1.0) -> None:
     """Set `grad` of every value that `root` depends on to seed * d root / d value. Eq. (13).
 
     Each call first sets the gradients of these values to zero. Values that `root` does not depend
@@ -154,7 +159,7 @@ def backward(root, seed=1.0):
     # <<< solution
 
 
-def grad_check(f, x, eps=1e-5):
+def grad_check(f: Callable[[Vector], tuple[float, Vector]], x: Vector, eps: float = 1e-5) -> float:
     """The relative error of a gradient, by central differences, Eqs. (14) to (16).
 
     Args:

@@ -3,99 +3,23 @@
 `python figures.py` draws all of them into figures/.
 """
 
-from __future__ import annotations
-
-import math
-import sys
-from pathlib import Path
-
+import figure_parts as parts
 import numpy as np
-from matplotlib.patches import FancyArrowPatch
+from figure_parts import SMALL
+from photograd_course.viz.handout import Fact, figures_of
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
     GRAY,
-    HANDOUT_DPI,
     INK,
     ORANGE,
-    house_style,
     new_figure,
     place_axes,
-    save_figure,
     signed_color_map,
 )
 from photograd_course.viz.style import RED as DARK_RED
 
 WIDTH = 6.6  # inches: 726 pixels
-TEXT = 9.0  # points: 11 pixels where the figure is shown 600 pixels wide
-SMALL = 8.5
-
-
-def graph_axes(figure, left, top, width, height):
-    """Axes without frame; one unit is one inch, y downwards."""
-    axes = place_axes(figure, left, top, width, height)
-    axes.set(xlim=(0, width), ylim=(height, 0))
-    axes.axis("off")
-    return axes
-
-
-def circle(axes, at, label, value="", gradient=""):
-    """A node: its label inside, its value above and its gradient below."""
-    box = {"boxstyle": "circle,pad=0.35", "fc": "white", "ec": INK, "lw": 1.4}
-    axes.text(*at, label, ha="center", va="center", fontsize=TEXT + 1.5, zorder=4, bbox=box)
-    bold = {"ha": "center", "fontsize": TEXT, "fontweight": "bold"}
-    axes.text(at[0], at[1] - 0.27, value, va="bottom", color=BLUE, **bold)
-    axes.text(at[0], at[1] + 0.27, gradient, va="top", color=ORANGE, **bold)
-
-
-def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
-    """An arrow from an input to its user, with a label beside it."""
-    axes.add_patch(
-        FancyArrowPatch(
-            start,
-            end,
-            connectionstyle=f"arc3,rad={bend}",
-            arrowstyle="-|>",
-            mutation_scale=10,
-            shrinkA=13,
-            shrinkB=13,
-            lw=1.1,
-            color=color,
-            zorder=1,
-        )
-    )
-    if label:
-        x = start[0] + where * (end[0] - start[0])
-        # The middle of an arc lies half its bend to the side of the chord (y points down).
-        y = start[1] + where * (end[1] - start[1]) - bend * 0.5 * (end[0] - start[0]) + lift
-        axes.text(
-            x,
-            y,
-            label,
-            ha="center",
-            va="center",
-            fontsize=SMALL,
-            color=color,
-            bbox={"fc": "white", "ec": "none", "pad": 0.6},
-            zorder=2,
-        )
-
-
-def key(axes, x, y):
-    """Which number is which."""
-    axes.text(x, y, "value", color=BLUE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.22, "gradient", color=ORANGE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.44, "× slope", color=FRAME, fontsize=TEXT)
-
-
-def slopes_of(user, source):
-    """Local derivatives stored by `user` for each of its uses of `source`."""
-    return [slope for node, slope in user.inputs if node is source]
-
-
-def first_slope(user, source):
-    found = slopes_of(user, source)
-    return found[0] if found else math.nan
 
 
 def fig1_worked_graph(module):
@@ -106,28 +30,21 @@ def fig1_worked_graph(module):
     module.backward(f)
     nodes = {"x": x, "y": y, "z": z, "+": a, "×": f}
     at = {"x": (0.9, 0.55), "y": (0.9, 1.75), "+": (2.9, 1.15), "z": (2.9, 2.3), "×": (4.9, 1.65)}
-    with house_style():
-        figure = new_figure(WIDTH, 2.85)
-        axes = graph_axes(figure, 0, 0, WIDTH, 2.85)
-        for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
-            slope = first_slope(nodes[end], nodes[start])
-            arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
-        for name, node in nodes.items():
-            circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
-        key(axes, 5.7, 0.45)
+    figure = new_figure(WIDTH, 2.85)
+    axes = parts.graph_axes(figure, 0, 0, WIDTH, 2.85)
+    for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
+        slope = parts.first_slope(nodes[end], nodes[start])
+        parts.arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
+    for name, node in nodes.items():
+        parts.circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
+    parts.key(axes, 5.7, 0.45)
     facts = {
-        "the value is 35": (f.data, 35.0, 35.0),
-        "the sum is 7 and its gradient 5": a.data == 7.0 and a.grad == 5.0,
-        "x and y get 5": x.grad == 5.0 and y.grad == 5.0,
-        "z gets 7": (z.grad, 7.0, 7.0),
+        "the value is 35": Fact(f.data, 35.0, 35.0),
+        "the sum is 7 and its gradient 5": Fact(a.data == 7.0 and a.grad == 5.0),
+        "x and y get 5": Fact(x.grad == 5.0 and y.grad == 5.0),
+        "z gets 7": Fact(z.grad, 7.0, 7.0),
     }
     return figure, facts
-
-
-def recorded_uses(module, root):
-    """The number of contributions that `backward` adds, and the number of values."""
-    order = module.topo_order(root)
-    return sum(len(node.inputs) for node in order), len(order)
 
 
 def fig2_cost(module):
@@ -135,7 +52,7 @@ def fig2_cost(module):
     counts, backward, forward = [1, 4, 16, 64, 256], [], []
     for n in counts:
         root = sum((module.Value(0.1 * k) * 0.5 + 0.3) ** 2 for k in range(n))
-        uses, gates = recorded_uses(module, root)
+        uses, gates = parts.recorded_uses(module, root)
         backward.append(uses)
         forward.append(gates)
     ladder, paths, rungs = [], [], [1, 2, 4, 6, 8, 10, 12]
@@ -143,35 +60,32 @@ def fig2_cost(module):
         bottom = module.Value(1.0)
         for _ in range(k):
             bottom = bottom**0.5 + bottom**0.25
-        ladder.append(recorded_uses(module, bottom)[0])
+        ladder.append(parts.recorded_uses(module, bottom)[0])
         paths.append(2**k)
     share = np.array(backward) / np.array(forward)
-    with house_style():
-        figure = new_figure(WIDTH, 2.9)
-        left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-        left.loglog(
-            counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="finite differences"
-        )
-        left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
-        left.set(
-            title="work for a gradient",
-            xlabel="inputs",
-            ylabel="operations per value",
-            ylim=(0.3, 2000),
-        )
-        right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
-        right.semilogy(rungs, paths, "s--", color=GRAY, ms=5, label="paths")
-        right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
-        right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
-        for axes in (left, right):
-            axes.legend(loc="upper left", fontsize=SMALL)
-            axes.tick_params(labelsize=SMALL)
-            axes.grid(True, axis="y")
+    figure = new_figure(WIDTH, 2.9)
+    left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
+    left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="finite differences")
+    left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
+    left.set(
+        title="work for a gradient",
+        xlabel="inputs",
+        ylabel="operations per value",
+        ylim=(0.3, 2000),
+    )
+    right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
+    right.semilogy(rungs, paths, "s--", color=GRAY, ms=5, label="paths")
+    right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
+    right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
+    for axes in (left, right):
+        axes.legend(loc="upper left", fontsize=SMALL)
+        axes.tick_params(labelsize=SMALL)
+        axes.grid(True, axis="y")
     facts = {
-        "backward adds less than two contributions for each value": bool(share.max() < 2.0),
-        "and the number of inputs has little effect": (share[-1] / share[1], 0.8, 1.25),
-        "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
-        "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
+        "backward adds less than two contributions for each value": Fact(share.max() < 2.0),
+        "and the number of inputs has little effect": Fact(share[-1] / share[1], 0.8, 1.25),
+        "a diamond adds four contributions": Fact(np.allclose(ladder, 4 * np.array(rungs))),
+        "twelve diamonds have over 50 times as many paths": Fact(paths[-1] > 50 * ladder[-1]),
     }
     return figure, facts
 
@@ -190,52 +104,40 @@ def fig3_kink(module):
     steps = (np.maximum(where + h, 2) - np.maximum(where - h, 2)) / (2 * h)
     x, two = module.Value(2.0), module.Value(2.0)
     module.backward(x.maximum(two))
-    with house_style():
-        figure = new_figure(WIDTH, 2.5)
-        left = place_axes(figure, 0.55, 0.35, 2.5, 1.65)
-        left.plot(where, values, color=INK, lw=2)
-        left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
-        right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
-        right.plot(where, steps, "--", color=GRAY, lw=1.8, label="differences, step 0.2")
-        below = where < 2
-        right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
-        right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
-        right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
-        right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
-        right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
-        right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
-        right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
-        right.set(
-            title="its derivative with respect to x",
-            xlabel="x",
-            xticks=[1, 2, 3],
-            yticks=[0, 0.5, 1],
-            ylim=(-0.12, 1.45),
-        )
-        right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
+    figure = new_figure(WIDTH, 2.5)
+    left = place_axes(figure, 0.55, 0.35, 2.5, 1.65)
+    left.plot(where, values, color=INK, lw=2)
+    left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
+    right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
+    right.plot(where, steps, "--", color=GRAY, lw=1.8, label="differences, step 0.2")
+    below = where < 2
+    right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
+    right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
+    right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
+    right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
+    right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
+    right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
+    right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
+    right.set(
+        title="its derivative with respect to x",
+        xlabel="x",
+        xticks=[1, 2, 3],
+        yticks=[0, 0.5, 1],
+        ylim=(-0.12, 1.45),
+    )
+    right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
     far = np.abs(where - 2) > h + 1e-9
     facts = {
-        "0 left of the kink, 1 right of it": bool(
+        "0 left of the kink, 1 right of it": Fact(
             (slopes[where < 2] == 0).all() and (slopes[where > 2] == 1).all()
         ),
-        "at the tie x gets 0 and the other input 1": x.grad == 0.0 and two.grad == 1.0,
-        "finite differences give 1/2 at the tie": (steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
-        "both agree farther than a step from the kink": bool(
+        "at the tie x gets 0 and the other input 1": Fact(x.grad == 0.0 and two.grad == 1.0),
+        "finite differences give 1/2 at the tie": Fact(steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
+        "both agree farther than a step from the kink": Fact(
             np.allclose(slopes[far], steps[far], atol=1e-9)
         ),
     }
     return figure, facts
-
-
-def levels(root):
-    """Level by level from the root: the order that fails, root last."""
-    order, seen = [root], {root}
-    for node in order:
-        for source, _ in node.inputs:
-            if source not in seen:
-                seen.add(source)
-                order.append(source)
-    return order[::-1]
 
 
 def fig4_order(module):
@@ -247,7 +149,7 @@ def fig4_order(module):
     f = b + a
     nodes = {"x": x, "a": a, "c": c, "b": b, "f": f}
     own, gradients, ranks = module.topo_order, {}, {}
-    for name, order in (("level by level", levels), ("every user first", own)):
+    for name, order in (("level by level", parts.levels), ("every user first", own)):
         module.topo_order = order
         try:
             module.backward(f)
@@ -259,39 +161,23 @@ def fig4_order(module):
     uses = (("x", "a"), ("a", "c"), ("c", "b"), ("b", "f"), ("a", "f"))
     h = 1e-5
     right = ((2 + h) ** 8 + (2 + h) ** 2 - (2 - h) ** 8 - (2 - h) ** 2) / (2 * h)
-    with house_style():
-        figure = new_figure(WIDTH, 2.25)
-        for left, name in ((0.0, "level by level"), (3.3, "every user first")):
-            _draw_order(graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
+    figure = new_figure(WIDTH, 2.25)
+    for left, name in ((0.0, "level by level"), (3.3, "every user first")):
+        parts.draw_order(parts.graph_axes(figure, left, 0, 3.3, 2.25), name, uses, ranks, gradients)
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
-        "the engine's gradient agrees with finite differences": (
-            gradients["every user first"]["x"] / right,
-            1 - 1e-6,
-            1 + 1e-6,
+        "the engine's gradient agrees with finite differences": Fact(
+            gradients["every user first"]["x"] / right, 1 - 1e-6, 1 + 1e-6
         ),
-        "in the engine's order users come first": all(mine[end] < mine[at] for at, end in uses),
-        "level by level a is visited before c, which uses it": theirs["a"] < theirs["c"],
-        "and x gets 4 only": (gradients["level by level"]["x"], 4.0, 4.0),
-        "a ends with 257 all the same": gradients["level by level"]["a"] == 257.0,
-        "every user first x gets 1028": gradients["every user first"]["x"] == 1028.0,
+        "in the engine's order users come first": Fact(
+            all(mine[end] < mine[at] for at, end in uses)
+        ),
+        "level by level a is visited before c, which uses it": Fact(theirs["a"] < theirs["c"]),
+        "and x gets 4 only": Fact(gradients["level by level"]["x"], 4.0, 4.0),
+        "a ends with 257 all the same": Fact(gradients["level by level"]["a"] == 257.0),
+        "every user first x gets 1028": Fact(gradients["every user first"]["x"] == 1028.0),
     }
     return figure, facts
-
-
-def _draw_order(axes, name, uses, ranks, gradients):
-    at = {"x": (0.4, 1.55), "a": (1.02, 1.55), "c": (1.65, 0.9), "b": (2.27, 0.9), "f": (2.9, 1.55)}
-    made = {"x": "x = 2", "a": "a = x²", "c": "c = a²", "b": "b = c²", "f": "b + a"}
-    rank = ranks[name]
-    axes.text(1.65, 0.2, name, ha="center", fontsize=TEXT + 1)
-    for start, end in uses:
-        late = rank[end] > rank[start]
-        arrow(axes, at[start], at[end], color=DARK_RED if late else FRAME)
-        if late:
-            axes.text(1.16, 1.12, "late", ha="right", fontsize=SMALL, color=DARK_RED)
-    for key_, place in at.items():
-        circle(axes, place, f"{rank[key_]}", "", f"{gradients[name][key_]:g}")
-        axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
 
 
 def fig5_uses_add_up(module):
@@ -300,47 +186,48 @@ def fig5_uses_add_up(module):
     total, square = x + y, x * x
     f = total + square
     module.backward(f)
-    by_sum = sum(slopes_of(total, x)) * total.grad
-    by_square = [slope * square.grad for slope in slopes_of(square, x)]
-    with house_style():
-        figure = new_figure(WIDTH, 2.7)
-        axes = graph_axes(figure, 0, 0, 3.5, 2.7)
-        places = {
-            "x": (0.55, 0.95),
-            "y": (0.55, 2.2),
-            "+": (1.75, 1.75),
-            "×": (1.75, 0.6),
-            "f": (3.0, 1.2),
-        }
-        arrow(axes, places["y"], places["+"])
-        arrow(axes, places["+"], places["f"])
-        arrow(axes, places["×"], places["f"])
-        arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
-        for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0)
-        for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
-            label = "+" if name == "f" else name
-            circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
-        plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
-        h = np.linspace(-2.0, 2.0, 41)
-        plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
-        for slope, color, style, name in (
-            (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
-            (by_sum, GRAY, ":", f"slope {by_sum:g}, the sum alone"),
-        ):
-            plot.plot(5 + h, 34 + slope * h, style, color=color, lw=1.8, label=name)
-        plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
-        plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
+    by_sum = sum(parts.slopes_of(total, x)) * total.grad
+    by_square = [slope * square.grad for slope in parts.slopes_of(square, x)]
+    figure = new_figure(WIDTH, 2.7)
+    axes = parts.graph_axes(figure, 0, 0, 3.5, 2.7)
+    places = {
+        "x": (0.55, 0.95),
+        "y": (0.55, 2.2),
+        "+": (1.75, 1.75),
+        "×": (1.75, 0.6),
+        "f": (3.0, 1.2),
+    }
+    parts.arrow(axes, places["y"], places["+"])
+    parts.arrow(axes, places["+"], places["f"])
+    parts.arrow(axes, places["×"], places["f"])
+    parts.arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
+    for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
+        parts.arrow(
+            axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0
+        )
+    for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
+        label = "+" if name == "f" else name
+        parts.circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
+    plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
+    h = np.linspace(-2.0, 2.0, 41)
+    plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
+    for slope, color, style, name in (
+        (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
+        (by_sum, GRAY, ":", f"slope {by_sum:g}, the sum alone"),
+    ):
+        plot.plot(5 + h, 34 + slope * h, style, color=color, lw=1.8, label=name)
+    plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
+    plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
-        "the value is 34": (f.data, 34.0, 34.0),
-        "the uses contribute 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
-        "x gets 11": (x.grad, 11.0, 11.0),
-        "the tangent of slope 11 touches": bend < 2e-4,
+        "the value is 34": Fact(f.data, 34.0, 34.0),
+        "the uses contribute 1, 5 and 5": Fact(by_sum == 1.0 and by_square == [5.0, 5.0]),
+        "x gets 11": Fact(x.grad, 11.0, 11.0),
+        "the tangent of slope 11 touches": Fact(bend < 2e-4),
         "a line of slope 1 cuts through": (
-            34 - 0.1 * by_sum > 8.9 + 4.9**2 and 34 + 0.1 * by_sum < 9.1 + 5.1**2
+            Fact(34 - 0.1 * by_sum > 8.9 + 4.9**2 and 34 + 0.1 * by_sum < 9.1 + 5.1**2)
         ),
-        "y gets 1": (y.grad, 1.0, 1.0),
+        "y gets 1": Fact(y.grad, 1.0, 1.0),
     }
     return figure, facts
 
@@ -364,46 +251,32 @@ def fig6_steps(module):
     steps = 10.0 ** np.arange(-12, 0.1, 0.5)
     right = np.array([module.grad_check(f, place, eps) for eps in steps])
     wrong = np.array([module.grad_check(lambda x: f(x, 1.01), place, eps) for eps in steps])
-    with house_style():
-        figure = new_figure(WIDTH, 3.0)
-        axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
-        axes.axhline(1e-6, color=DARK_RED, lw=1.2)
-        axes.text(3.5, 1e-6, "passes below", color=DARK_RED, fontsize=SMALL, va="center")
-        axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
-        axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
-        axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
-        axes.text(3.5, 1e-2, "gradient 1 % too long", color=BLUE, fontsize=SMALL, va="center")
-        axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
-        axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
-        axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
-        axes.set(xlabel="eps", ylabel="error reported", xlim=(4e-13, 2), ylim=(1e-13, 3))
-        axes.tick_params(labelsize=SMALL)
+    figure = new_figure(WIDTH, 3.0)
+    axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
+    axes.axhline(1e-6, color=DARK_RED, lw=1.2)
+    axes.text(3.5, 1e-6, "passes below", color=DARK_RED, fontsize=SMALL, va="center")
+    axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
+    axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
+    axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
+    axes.text(3.5, 1e-2, "gradient 1 % too long", color=BLUE, fontsize=SMALL, va="center")
+    axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
+    axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
+    axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
+    axes.set(xlabel="eps", ylabel="error reported", xlim=(4e-13, 2), ylim=(1e-13, 3))
+    axes.tick_params(labelsize=SMALL)
     at = {
         exponent: int(np.argmin(np.abs(np.log10(steps) - exponent)))
         for exponent in (-12, -5, -3, -2)
     }
     facts = {
-        "at 1e-5 a right gradient is a thousand times below the limit": right[at[-5]] < 1e-9,
-        "with a step of 1e-12 it would fail": right[at[-12]] > 1e-6,
-        "ten times the step, a hundred times the truncation": (
-            right[at[-2]] / right[at[-3]],
-            90.0,
-            110.0,
+        "at 1e-5 a right gradient is a thousand times below the limit": Fact(right[at[-5]] < 1e-9),
+        "with a step of 1e-12 it would fail": Fact(right[at[-12]] > 1e-6),
+        "ten times the step, a hundred times the truncation": Fact(
+            right[at[-2]] / right[at[-3]], 90.0, 110.0
         ),
-        "1 % off is reported as 1 %": (wrong[at[-5]], 0.0098, 0.0101),
+        "1 % off is reported as 1 %": Fact(wrong[at[-5]], 0.0098, 0.0101),
     }
     return figure, facts
-
-
-def blurred(texels):
-    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
-    rows = []
-    for row in texels:
-        padded = [row[0], *row, row[-1]]
-        rows.append(
-            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
-        )
-    return rows
 
 
 def fig7_picture(module):
@@ -414,7 +287,7 @@ def fig7_picture(module):
 
     def loss_of(numbers):
         leaves = [[module.Value(t) for t in line] for line in numbers]
-        seen = blurred(leaves)
+        seen = parts.blurred(leaves)
         loss = module.Value(0.0)
         for line, wanted in zip(seen, target, strict=True):
             for value, want in zip(line, wanted, strict=True):
@@ -430,51 +303,44 @@ def fig7_picture(module):
     step = np.zeros(start.shape)
     step[5, 4] = 1e-5
     slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
-    with house_style():
-        figure = new_figure(WIDTH, 1.85)
-        for k, (name, picture) in enumerate(
-            (("texels", start), ("target", target), ("after one step", after))
-        ):
-            axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
-            axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
-            axes.set_title(name, fontsize=SMALL)
-            axes.set(xticks=[], yticks=[])
-        top = float(np.abs(by_pixel).max()) or 1.0
-        for k, (name, picture) in enumerate(
-            (("dL / d pixels", by_pixel), ("dL / d texels", by_texel))
-        ):
-            axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
-            image = axes.imshow(
-                picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
-            )
-            axes.set_title(name, fontsize=SMALL)
-            axes.set(xticks=[], yticks=[])
-        bar = figure.colorbar(
-            image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09), orientation="horizontal"
+    figure = new_figure(WIDTH, 1.85)
+    for k, (name, picture) in enumerate(
+        (("texels", start), ("target", target), ("after one step", after))
+    ):
+        axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
+        axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+        axes.set_title(name, fontsize=SMALL)
+        axes.set(xticks=[], yticks=[])
+    top = float(np.abs(by_pixel).max()) or 1.0
+    for k, (name, picture) in enumerate((("dL / d pixels", by_pixel), ("dL / d texels", by_texel))):
+        axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
+        image = axes.imshow(
+            picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
-        bar.set_ticks([-0.5, 0.0, 0.5])
-        bar.ax.tick_params(labelsize=8)
+        axes.set_title(name, fontsize=SMALL)
+        axes.set(xticks=[], yticks=[])
+    bar = figure.colorbar(
+        image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09), orientation="horizontal"
+    )
+    bar.set_ticks([-0.5, 0.0, 0.5])
+    bar.ax.tick_params(labelsize=8)
     facts = {
-        "negative where the image is too dark": bool((by_texel[4:8, 6:10] < 0).all()),
-        "positive where it is too bright": bool((by_texel[[0, -1]] > 0).all()),
-        "with respect to pixels there are two values": len(np.unique(by_pixel.round(12))) == 2,
-        "with respect to texels there are more": len(np.unique(by_texel.round(12))) > 2,
-        "their sums agree": (by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
-        "it agrees with finite differences": (by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
-        "a step against it lowers the loss": (loss_of(after)[0].data / loss.data, 0.0, 0.9),
+        "negative where the image is too dark": Fact((by_texel[4:8, 6:10] < 0).all()),
+        "positive where it is too bright": Fact((by_texel[[0, -1]] > 0).all()),
+        "with respect to pixels there are two values": Fact(
+            len(np.unique(by_pixel.round(12))) == 2
+        ),
+        "with respect to texels there are more": Fact(len(np.unique(by_texel.round(12))) > 2),
+        "their sums agree": Fact(by_texel.sum() / by_pixel.sum(), 1 - 1e-9, 1 + 1e-9),
+        "it agrees with finite differences": Fact(by_texel[5, 4] / slope, 1 - 1e-6, 1 + 1e-6),
+        "a step against it lowers the loss": Fact(loss_of(after)[0].data / loss.data, 0.0, 0.9),
     }
     return figure, facts
 
 
-FIGURES = {
-    "fig1_worked_graph": fig1_worked_graph,
-    "fig2_cost": fig2_cost,
-    "fig3_kink": fig3_kink,
-    "fig4_order": fig4_order,
-    "fig5_uses_add_up": fig5_uses_add_up,
-    "fig6_steps": fig6_steps,
-    "fig7_picture": fig7_picture,
-}
+FIGURES = figures_of(
+    fig1_worked_graph, fig2_cost, fig3_kink, fig4_order, fig5_uses_add_up, fig6_steps, fig7_picture
+)
 RED = {
     "fig1_worked_graph": "product_no_swap",
     "fig2_cost": "order_with_repeats",
@@ -484,14 +350,3 @@ RED = {
     "fig6_steps": "check_one_sided",
     "fig7_picture": "forgets_the_chain",
 }
-
-
-if __name__ == "__main__":
-    here = Path(__file__).parent
-    sys.path.insert(0, str(here))
-    import engine
-
-    for name, make in FIGURES.items():
-        drawn, held = make(engine)
-        path = save_figure(drawn, here / "figures" / f"{name}.png", HANDOUT_DPI)
-        print(path.stat().st_size, name, held)

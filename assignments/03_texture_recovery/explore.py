@@ -7,8 +7,6 @@
 # texture: its edges then lie inside texels.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 from importlib.util import find_spec

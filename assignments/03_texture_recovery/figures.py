@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
 
 
 def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
@@ -26,42 +25,40 @@ def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
     bent = u[1:-1][bend > 1e-6]
     to_center = np.abs(bent[:, None] - np.array([1 / 6, 1 / 2, 5 / 6])).min(axis=1)
     facts: Facts = {
-        "at a center the surface is the texel": bool(np.allclose(at_centers, T[:, :, 0])),
-        "flat beyond the outermost centers": bool(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
-        "never outside the texels' range": (float(surface.min()), 0.1 - 1e-12, 1.0),
-        "bends only at columns of centers": bool(len(bent) >= 3 and to_center.max() < 1 / 361),
+        "at a center the surface is the texel": Fact(np.allclose(at_centers, T[:, :, 0])),
+        "flat beyond the outermost centers": Fact(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
+        "never outside the texels' range": Fact(surface.min(), 0.1 - 1e-12, 1.0),
+        "bends only at columns of centers": Fact(len(bent) >= 3 and to_center.max() < 1 / 361),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        left, middle, right = figure.subplots(1, 3)
-        extent = (0.0, 1.0, 1.0, 0.0)
-        shown = ((left, T[:, :, 0], "texels T[i, j]"), (middle, surface, "sample at (u, v)"))
-        for axes, values, title in shown:
-            axes.imshow(values, cmap="gray", vmin=0, vmax=1, extent=extent, aspect=2 / 3)
-            axes.plot(*_centers((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
-            axes.set_title(title)
-            axes.set_xlabel("u")
-            axes.set_xticks([0, 0.5, 1])
-            axes.set_yticks([0, 0.5, 1])
-        left.set_ylabel("v")
-        middle.axhline(v, color=BLUE, linewidth=1.5, linestyle="--")
-        for i in range(2):
-            for j in range(3):
-                x, y = (j + 0.5) / 3, (i + 0.5) / 2
-                left.annotate(
-                    f"[{i}, {j}]\n\n{T[i, j, 0]:.1f}",
-                    (x, y),
-                    ha="center",
-                    va="center",
-                    fontsize=8,
-                    color="white" if T[i, j, 0] < 0.6 else INK,
-                )
-        right.plot(u, line, color=BLUE)
-        for c in (1 / 6, 0.5, 5 / 6):
-            right.axvline(c, color=ORANGE, linewidth=0.8, linestyle=":")
-        right.set(title=f"along v = {v}", xlabel="u", xlim=(0, 1), ylim=(0, 1), box_aspect=2 / 3)
-        right.set(xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
-        right.grid(visible=True)
+    figure, (left, middle, right) = subplots(7.0, 2.1, 1, 3)
+    extent = (0.0, 1.0, 1.0, 0.0)
+    shown = ((left, T[:, :, 0], "texels T[i, j]"), (middle, surface, "sample at (u, v)"))
+    for axes, values, title in shown:
+        axes.imshow(values, cmap="gray", vmin=0, vmax=1, extent=extent, aspect=2 / 3)
+        axes.plot(*_centers((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
+        axes.set_title(title)
+        axes.set_xlabel("u")
+        axes.set_xticks([0, 0.5, 1])
+        axes.set_yticks([0, 0.5, 1])
+    left.set_ylabel("v")
+    middle.axhline(v, color=BLUE, linewidth=1.5, linestyle="--")
+    for i in range(2):
+        for j in range(3):
+            x, y = (j + 0.5) / 3, (i + 0.5) / 2
+            left.annotate(
+                f"[{i}, {j}]\n\n{T[i, j, 0]:.1f}",
+                (x, y),
+                ha="center",
+                va="center",
+                fontsize=8,
+                color="white" if T[i, j, 0] < 0.6 else INK,
+            )
+    right.plot(u, line, color=BLUE)
+    for c in (1 / 6, 0.5, 5 / 6):
+        right.axvline(c, color=ORANGE, linewidth=0.8, linestyle=":")
+    right.set(title=f"along v = {v}", xlabel="u", xlim=(0, 1), ylim=(0, 1), box_aspect=2 / 3)
+    right.set(xticks=[0, 0.5, 1], yticks=[0, 0.5, 1])
+    right.grid(visible=True)
     return figure, facts
 
 
@@ -78,45 +75,43 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     x = np.random.default_rng(3).uniform(-1, 1, (*shape, 1))
     left, right = np.vdot(module.bilinear_sample(x, uv), g), np.vdot(x[:, :, 0], back)
     facts: Facts = {
-        "nine texels have a derivative": (float(np.count_nonzero(back)), 9, 9),
-        "the derivatives sum to the sum of g": (float(back.sum() - g.sum()), -1e-12, 1e-12),
-        "two samples at one point are summed": bool(np.allclose(back, alone, atol=1e-12)),
-        "the corner texel gets all of its sample": (float(back[3, 5]), 0.8 - 1e-12, 0.8 + 1e-12),
-        "<S x, g> = <x, S* g>": (float(left - right), -1e-12, 1e-12),
+        "nine texels have a derivative": Fact(np.count_nonzero(back), 9, 9),
+        "the derivatives sum to the sum of g": Fact(back.sum() - g.sum(), -1e-12, 1e-12),
+        "two samples at one point are summed": Fact(np.allclose(back, alone, atol=1e-12)),
+        "the corner texel gets all of its sample": Fact(back[3, 5], 0.8 - 1e-12, 0.8 + 1e-12),
+        "<S x, g> = <x, S* g>": Fact(left - right, -1e-12, 1e-12),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.75), layout="constrained")
-        panels = figure.subplots(1, 2)
-        titles = ("samples with their g", "adjoint: derivatives of texels")
-        for axes, title in zip(panels, titles, strict=True):
-            _grid(axes, shape)
-            axes.set_title(title)
-        panels[0].plot(*_centers(shape).T, ".", color=GRAY, markersize=4)
-        colors = {"cmap": signed_color_map(), "vmin": -1, "vmax": 1}
-        panels[0].scatter(
-            *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colors
+    figure, panels = subplots(7.0, 2.75, 1, 2)
+    titles = ("samples with their g", "adjoint: derivatives of texels")
+    for axes, title in zip(panels, titles, strict=True):
+        _grid(axes, shape)
+        axes.set_title(title)
+    panels[0].plot(*_centers(shape).T, ".", color=GRAY, markersize=4)
+    colors = {"cmap": signed_color_map(), "vmin": -1, "vmax": 1}
+    panels[0].scatter(
+        *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colors
+    )
+    for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
+        note(
+            panels[0],
+            value,
+            uv[k],
+            (0, 9),
+            ha="right" if k == 2 else "center",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
         )
-        for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
-            panels[0].annotate(
-                value,
-                uv[k],
-                (0, 9),
-                textcoords="offset points",
-                ha="right" if k == 2 else "center",
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
-            )
-        panels[0].set(xlim=(0, 1), ylim=(1, 0))
-        image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colors)
-        for i, j in np.argwhere(back != 0):
-            panels[1].text(
-                (j + 0.5) / 6,
-                (i + 0.5) / 4,
-                f"{back[i, j]:+.2f}".replace("-", "−"),
-                ha="center",
-                va="center",
-                color="white" if abs(back[i, j]) > 0.55 else INK,
-            )
-        figure.colorbar(image, ax=panels[1], ticks=[-1, 0, 1], shrink=0.8)
+    panels[0].set(xlim=(0, 1), ylim=(1, 0))
+    image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colors)
+    for i, j in np.argwhere(back != 0):
+        panels[1].text(
+            (j + 0.5) / 6,
+            (i + 0.5) / 4,
+            f"{back[i, j]:+.2f}".replace("-", "−"),
+            ha="center",
+            va="center",
+            color="white" if abs(back[i, j]) > 0.55 else INK,
+        )
+    figure.colorbar(image, ax=panels[1], ticks=[-1, 0, 1], shrink=0.8)
     return figure, facts
 
 
@@ -133,42 +128,36 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
     large = np.abs(missing) > 0.05
     share = float(np.vdot(missing, added) / np.vdot(missing, missing))
     facts: Facts = {
-        "99 % of what misses by more than 0.05 moves the right way": (
-            float(agree[large].mean()),
-            0.99,
-            1,
+        "99 % of what misses by more than 0.05 moves the right way": Fact(
+            agree[large].mean(), 0.99, 1
         ),
-        "the step overshoots: it is 1.6 times the difference": (share, 1.4, 1.8),
-        "gradient and residual look alike": (_cosine(missing, added), 0.95, 0.999),
-        "the step brings the texture closer": (
-            float(np.linalg.norm(missing - added) / np.linalg.norm(missing)),
-            0,
-            0.75,
+        "the step overshoots: it is 1.6 times the difference": Fact(share, 1.4, 1.8),
+        "gradient and residual look alike": Fact(_cosine(missing, added), 0.95, 0.999),
+        "the step brings the texture closer": Fact(
+            np.linalg.norm(missing - added) / np.linalg.norm(missing), 0, 0.75
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.2), layout="constrained")
-        panels = figure.subplots(2, 2)
-        top = 0.4
-        shown = ((T, "T after 2 steps"), (truth, "truth"))
-        for axes, (values, title) in zip(panels[0], shown, strict=True):
-            axes.imshow(_screen(values), interpolation="nearest")
-            axes.set_title(title)
-        signed = ((missing, "difference: truth − T"), (added, "one step: −τ ∂L/∂T"))
-        colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
-        for axes, (values, title) in zip(panels[1], signed, strict=True):
-            image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
-            axes.set_title(title)
-        for axes in panels.flat:
-            axes.set(xticks=[], yticks=[])
-        figure.colorbar(
-            image,
-            ax=panels,
-            ticks=[-top, 0, top],
-            shrink=0.45,
-            anchor=(0, 0.03),
-            label="mean of channels",
-        )
+    figure, panels = subplots(7.0, 4.2, 2, 2)
+    top = 0.4
+    shown = ((T, "T after 2 steps"), (truth, "truth"))
+    for axes, (values, title) in zip(panels[0], shown, strict=True):
+        axes.imshow(_screen(values), interpolation="nearest")
+        axes.set_title(title)
+    signed = ((missing, "difference: truth − T"), (added, "one step: −τ ∂L/∂T"))
+    colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
+    for axes, (values, title) in zip(panels[1], signed, strict=True):
+        image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
+        axes.set_title(title)
+    for axes in panels.flat:
+        axes.set(xticks=[], yticks=[])
+    figure.colorbar(
+        image,
+        ax=panels,
+        ticks=[-top, 0, top],
+        shrink=0.45,
+        anchor=(0, 0.03),
+        label="mean of channels",
+    )
     return figure, facts
 
 
@@ -188,32 +177,30 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
             errors[share].append(psnr(T, truth))
     peak = int(np.argmax(errors[1.05]))
     facts: Facts = {
-        "0.95 of the bound: over 55 dB after 25 steps": (errors[0.95][25], 55, 80),
-        "0.95 never gets worse": bool((np.diff(errors[0.95]) > 0).all()),
-        "0.3 is slower": (errors[0.3][25] - errors[0.95][25], -60, -10),
-        "1.05 first looks well": (float(max(errors[1.05])), 20, 40),
-        "1.05 then loses more than 10 dB": (max(errors[1.05]) - errors[1.05][-1], 10, 100),
-        "and it turns after 5 steps or more": (float(peak), 5, 55),
+        "0.95 of the bound: over 55 dB after 25 steps": Fact(errors[0.95][25], 55, 80),
+        "0.95 never gets worse": Fact((np.diff(errors[0.95]) > 0).all()),
+        "0.3 is slower": Fact(errors[0.3][25] - errors[0.95][25], -60, -10),
+        "1.05 first looks well": Fact(max(errors[1.05]), 20, 40),
+        "1.05 then loses more than 10 dB": Fact(max(errors[1.05]) - errors[1.05][-1], 10, 100),
+        "and it turns after 5 steps or more": Fact(peak, 5, 55),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
-        for share, values in errors.items():
-            color, dashes = looks[share]
-            axes.plot(values, color=color, linestyle=dashes, label=f"{share:g}")
-            place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
-            axes.annotate(
-                f"{share:g} · 2/λ",
-                (steps, values[-1]),
-                (4, place),
-                textcoords="offset points",
-                color=color if share != 0.3 else INK,
-                va="center",
-            )
-        axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
-        axes.grid(visible=True)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, axes = subplots(7.0, 2.9)
+    looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
+    for share, values in errors.items():
+        color, dashes = looks[share]
+        axes.plot(values, color=color, linestyle=dashes, label=f"{share:g}")
+        place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
+        note(
+            axes,
+            f"{share:g} · 2/λ",
+            (steps, values[-1]),
+            (4, place),
+            color=color if share != 0.3 else INK,
+            va="center",
+        )
+    axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -234,40 +221,31 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
     worst_to_rim = float(np.hypot(*(np.argwhere(unseen) - worst).T).min())
     samples = _mean_of_samples(uv[:1500], target[:1500], truth.shape)
     facts: Facts = {
-        "over 95 % of the measured values are right to 0.02": (
-            float((error < 0.02).mean()),
-            0.95,
-            1,
+        "over 95 % of the measured values are right to 0.02": Fact((error < 0.02).mean(), 0.95, 1),
+        "the worst lies at the border of the patch": Fact(worst_to_rim, 0, 1.5),
+        "nearly 50,000 samples": Fact(len(uv), 49_000, 51_000),
+        "unseen texels do not change": Fact(np.array_equal(T[unseen], start[unseen])),
+        "unseen texels lie in the patch": Fact(unseen.mean(), 0.04, 0.07),
+        "the loss falls with every step": Fact((np.diff(losses) < 0).all()),
+        "after 3 steps noise is still visible": Fact(psnr(early[seen], truth[seen]), 12, 32),
+        "over half of the error is gone by then": Fact(
+            np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen]), 0.2, 0.5
         ),
-        "the worst lies at the border of the patch": (worst_to_rim, 0, 1.5),
-        "nearly 50,000 samples": (float(len(uv)), 49_000, 51_000),
-        "unseen texels do not change": bool(np.array_equal(T[unseen], start[unseen])),
-        "unseen texels lie in the patch": (float(unseen.mean()), 0.04, 0.07),
-        "the loss falls with every step": bool((np.diff(losses) < 0).all()),
-        "after 3 steps noise is still visible": (psnr(early[seen], truth[seen]), 12, 32),
-        "over half of the error is gone by then": (
-            float(np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen])),
-            0.2,
-            0.5,
-        ),
-        "over a third of the values of the dark half are negative then": (
-            float((early[24:][seen[24:]] < 0).mean()),
-            1 / 3,
-            0.6,
+        "over a third of the values of the dark half are negative then": Fact(
+            (early[24:][seen[24:]] < 0).mean(), 1 / 3, 0.6
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.7), layout="constrained")
-        shown = (
-            (samples, "1,500 of the samples"),
-            (start, "start: noise"),
-            (early, "3 steps"),
-            (T, "40 steps"),
-        )
-        for k, (values, title) in enumerate(shown):
-            axes = figure.add_subplot(2, 2, k + 1)
-            axes.imshow(_screen(values), interpolation="nearest")
-            axes.set(xticks=[], yticks=[], title=title)
+    figure = Figure(figsize=(7.0, 4.7), layout="constrained")
+    shown = (
+        (samples, "1,500 of the samples"),
+        (start, "start: noise"),
+        (early, "3 steps"),
+        (T, "40 steps"),
+    )
+    for k, (values, title) in enumerate(shown):
+        axes = figure.add_subplot(2, 2, k + 1)
+        axes.imshow(_screen(values), interpolation="nearest")
+        axes.set(xticks=[], yticks=[], title=title)
     return figure, facts
 
 
@@ -279,31 +257,22 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
     coarse, picked = levels[2], rings[2::4, 2::4]
     fine_half = (i[::4, ::4] ** 2 + j[::4, ::4] ** 2) > 0.9
     facts: Facts = {
-        "eight levels": (float(len(levels)), 8, 8),
-        "each level has the same mean": (
-            max(abs(float(level.mean() - rings.mean())) for level in levels),
-            0,
-            1e-12,
+        "eight levels": Fact(len(levels), 8, 8),
+        "each level has the same mean": Fact(
+            max(abs(float(level.mean() - rings.mean())) for level in levels), 0, 1e-12
         ),
-        "picked texels alias where the rings are fine": (float(picked[fine_half].std()), 0.3, 0.4),
-        "about half of the false contrast remains where rings are of medium width": (
-            float(coarse[6:14, 6:14].std() / picked[6:14, 6:14].std()),
-            0.4,
-            0.65,
+        "picked texels alias where the rings are fine": Fact(picked[fine_half].std(), 0.3, 0.4),
+        "about half of the false contrast remains where rings are of medium width": Fact(
+            coarse[6:14, 6:14].std() / picked[6:14, 6:14].std(), 0.4, 0.65
         ),
-        "the mip level is uniform there": (float(coarse[fine_half].std()), 0, 0.05),
+        "the mip level is uniform there": Fact(coarse[fine_half].std(), 0, 0.05),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        shown = (
-            (rings, "texture, 128 × 128"),
-            (picked, "every 4th texel"),
-            (coarse, "mip level 2"),
-        )
-        for k, (values, title) in enumerate(shown):
-            axes = figure.add_subplot(1, 3, k + 1)
-            axes.imshow(values[:, :, 0], cmap="gray", vmin=0, vmax=1, interpolation="nearest")
-            axes.set(xticks=[], yticks=[], title=title)
+    figure = Figure(figsize=(7.0, 2.6), layout="constrained")
+    shown = ((rings, "texture, 128 × 128"), (picked, "every 4th texel"), (coarse, "mip level 2"))
+    for k, (values, title) in enumerate(shown):
+        axes = figure.add_subplot(1, 3, k + 1)
+        axes.imshow(values[:, :, 0], cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+        axes.set(xticks=[], yticks=[], title=title)
     return figure, facts
 
 
@@ -377,14 +346,9 @@ def _grid(axes: Axes, shape: tuple[int, int]) -> None:
     axes.set(xlim=(0, 1), ylim=(1, 0), aspect=4 / 6, xticks=[], yticks=[])
 
 
-FIGURES = {
-    "fig1_surface": fig1_surface,
-    "fig2_adjoint": fig2_adjoint,
-    "fig3_residual": fig3_residual,
-    "fig4_step": fig4_step,
-    "fig5_photograph": fig5_photograph,
-    "fig6_mips": fig6_mips,
-}
+FIGURES = figures_of(
+    fig1_surface, fig2_adjoint, fig3_residual, fig4_step, fig5_photograph, fig6_mips
+)
 RED = {
     "fig1_surface": "half_texel",
     "fig2_adjoint": "adjoint_last_wins",

@@ -11,13 +11,23 @@ Your tasks are the six functions below, one section of the handout each;
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Texture = Annotated[np.ndarray, "H W C"]
+Places = Annotated[np.ndarray, "N 2"]  # (u, v)
+Samples = Annotated[np.ndarray, "N C"]
+Losses = Annotated[np.ndarray, "n+1"]
+Mask = Annotated[np.ndarray, "H W"]  # bool
+Shape = tuple[int, int]  # (H, W)
 
 CURVATURE_ROUNDS = 40  # iterations of the power method, before gradient descent
 SAFETY = 0.95  # fraction of the largest stable learning rate
 
 
-def bilinear_sample(T, uv):
+def bilinear_sample(T: Texture, uv: Places) -> Samples:
     """Bilinear interpolation of a texture.
 
     Args:
@@ -40,7 +50,7 @@ def bilinear_sample(T, uv):
     # <<< solution
 
 
-def bilinear_sample_adjoint(shape, uv, g):
+def bilinear_sample_adjoint(shape: Shape, uv: Places, g: Samples) -> Texture:
     """The adjoint of `bilinear_sample`: scatters the derivative of each sample to four texels.
 
     Args:
@@ -68,7 +78,7 @@ def bilinear_sample_adjoint(shape, uv, g):
     # <<< solution
 
 
-def loss_and_grad(T, uv, target):
+def loss_and_grad(T: Texture, uv: Places, target: Samples) -> tuple[float, Texture]:
     """Mean squared error of a texture at the measured points, and its gradient.
 
     Args:
@@ -88,7 +98,7 @@ def loss_and_grad(T, uv, target):
     # <<< solution
 
 
-def largest_curvature(shape, uv, n):
+def largest_curvature(shape: Shape, uv: Places, n: int) -> float:
     """The largest eigenvalue of the Hessian of the loss, estimated by power iteration.
 
     The Hessian is the same for each channel and does not depend on texels or measurements.
@@ -111,7 +121,9 @@ def largest_curvature(shape, uv, n):
     # <<< solution
 
 
-def recover_texture(T0, uv, target, n):
+def recover_texture(
+    T0: Texture, uv: Places, target: Samples, n: int
+) -> tuple[Texture, Losses, Mask]:
     """Gradient descent with a constant learning rate, SAFETY times the largest stable one.
 
     Args:
@@ -138,7 +150,7 @@ def recover_texture(T0, uv, target, n):
     # <<< solution
 
 
-def build_mips(T):
+def build_mips(T: Texture) -> list[Texture]:
     """The mipmap of a texture, down to a single texel.
 
     Args:

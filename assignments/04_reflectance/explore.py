@@ -7,8 +7,6 @@
 # of work.
 
 # %%
-from __future__ import annotations
-
 import importlib
 
 import numpy as np

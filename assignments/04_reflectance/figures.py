@@ -3,13 +3,12 @@
 `module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import Fact, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
@@ -30,52 +29,52 @@ def fig1_furnace(module):
         )
     plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
     facts = {
-        "microfacets of roughness 1 return 1 - ln 2 straight up": (
-            float(mirrors[1.0][-1] - 1 + np.log(2)),
-            -1e-9,
-            1e-9,
+        "microfacets of roughness 1 return 1 - ln 2 straight up": Fact(
+            mirrors[1.0][-1] - 1 + np.log(2), -1e-9, 1e-9, red="lobe_printed"
         ),
-        "no microfacets return more than arrives": (
-            max(float(values.max()) for values in mirrors.values()),
-            0.3,
-            1.0,
+        "no microfacets return more than arrives": Fact(
+            max(float(values.max()) for values in mirrors.values()), 0.3, 1.0, red="lobe_no_masking"
         ),
-        "Burley's, roughness 1, returns 1.46 at 0.05": (float(burley[1.0][1]), 1.46, 1.47),
-        "Burley's, roughness 1, is above 1 everywhere": (float(burley[1.0].min()), 1.0, 1.1),
-        "Burley's, roughness 0.3, is nowhere above 1": (float(burley[0.3].max()), 0.5, 1.0),
-        "as printed, Cook and Torrance's returns four times as much": (
-            float(np.abs(printed / right - 4).max()),
-            0,
-            1e-9,
+        "Burley's, roughness 1, returns 1.46 at 0.05": Fact(
+            burley[1.0][1], 1.46, 1.47, red="furnace_mean"
         ),
-        "corrected it nowhere returns more than arrives": (float(right.max()), 0.8, 1.0),
-        "white plastic of roughness 0.6 returns 1.06 at 0.1": (float(plastic), 1.055, 1.065),
+        "Burley's, roughness 1, is above 1 everywhere": Fact(
+            burley[1.0].min(), 1.0, 1.1, red="furnace_over_pi"
+        ),
+        "Burley's, roughness 0.3, is nowhere above 1": Fact(
+            burley[0.3].max(), 0.5, 1.0, red="furnace_no_cosine"
+        ),
+        "as printed, Cook and Torrance's returns four times as much": Fact(
+            np.abs(printed / right - 4).max(), 0, 1e-9, held="about a model that is given"
+        ),
+        "corrected it nowhere returns more than arrives": Fact(
+            right.max(), 0.8, 1.0, red="furnace_viewer_cosine"
+        ),
+        "white plastic of roughness 0.6 returns 1.06 at 0.1": Fact(
+            plastic, 1.055, 1.065, red="gltf_ground_keeps_all"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-        panels = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        axes = panels[0]
-        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
-        for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
-            axes.plot(cosines, values, look, color=color, label=f"microfacets, roughness {r:g}")
-        for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
-            axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
-        axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
-        axes.annotate(
-            "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), textcoords="offset points", ha="right"
-        )
-        axes.set(title="microfacets with F = 1, and Burley's white", ylim=(0, 1.6))
-        axes.legend(loc="lower left", fontsize=6.5)
-        axes = panels[1]
-        axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
-        axes.plot(cosines[2:], right, "--", color=BLUE, label="with 4 π")
-        axes.set(title="Cook and Torrance's, slope 0.4", ylim=(0, 4.4))
-        axes.legend(loc="center right", fontsize=7)
-        for axes in panels:
-            axes.axhline(1, color=FRAME, linewidth=0.8)
-            axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
-            axes.spines[["top", "right"]].set_visible(False)
-        panels[0].set_ylabel("directional albedo")
+    figure, panels = subplots(7.0, 3.2, 1, 2, width_ratios=(1.5, 1))
+    axes = panels[0]
+    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
+    for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
+        axes.plot(cosines, values, look, color=color, label=f"microfacets, roughness {r:g}")
+    for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
+        axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
+    axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
+    note(axes, "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), ha="right")
+    axes.set(title="microfacets with F = 1, and Burley's white", ylim=(0, 1.6))
+    axes.legend(loc="lower left", fontsize=6.5)
+    axes = panels[1]
+    axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
+    axes.plot(cosines[2:], right, "--", color=BLUE, label="with 4 π")
+    axes.set(title="Cook and Torrance's, slope 0.4", ylim=(0, 4.4))
+    axes.legend(loc="center right", fontsize=7)
+    for axes in panels:
+        axes.axhline(1, color=FRAME, linewidth=0.8)
+        axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[0].set_ylabel("directional albedo")
     return figure, facts
 
 
@@ -93,37 +92,37 @@ def fig2_lobes(module):
     away = np.isclose(np.abs(np.degrees(angle) - 45), 40)  # of the mirror direction
     peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
     facts = {
-        "Phong's peak lies in the mirror direction": (
-            float(np.degrees(angle[np.argmax(highlight)])),
-            44.4,
-            45.6,
+        "Phong's peak lies in the mirror direction": Fact(
+            np.degrees(angle[np.argmax(highlight)]), 44.4, 45.6, held="about a model that is given"
         ),
-        "at roughness 0.4 the peak lies within 3 degrees of it": (peaks[0.4], 44, 48),
-        "at roughness 0.6 it lies 11.5 degrees beyond": (peaks[0.6], 56.4, 56.6),
-        "at roughness 0.8 it is brightest from the horizon": (peaks[0.8], 89, 90),
-        "40 degrees away GGX has 1000 times Phong's light or more": (
-            float((curves[0.4][away] / matched[away]).min()),
-            1000,
-            1e6,
+        "at roughness 0.4 the peak lies within 3 degrees of it": Fact(
+            peaks[0.4], 44, 48, red="lobe_not_squared"
+        ),
+        "at roughness 0.6 it lies 11.5 degrees beyond": Fact(
+            peaks[0.6], 56.4, 56.6, red="lobe_no_roots"
+        ),
+        "at roughness 0.8 it is brightest from the horizon": Fact(
+            peaks[0.8], 89, 90, red="lobe_facets_stretched"
+        ),
+        "40 degrees away GGX has 1000 times Phong's light or more": Fact(
+            (curves[0.4][away] / matched[away]).min(), 1000, 1e6, red="lobe_beckmann"
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        panels = figure.subplots(1, 2)
-        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
-        degrees = np.degrees(angle)
-        for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
-            if r > 0.4:
-                panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
-        panels[0].set(title="GGX lobes", ylabel="D V [1/sr]", ylim=(0, 1.5))
-        panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
-        panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
-        panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
-        for axes in panels:
-            axes.axvline(45, color=FRAME, linewidth=0.7)
-            axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
-            axes.spines[["top", "right"]].set_visible(False)
-            axes.legend(loc="upper left", fontsize=7)
+    figure, panels = subplots(7.0, 2.9, 1, 2)
+    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
+    degrees = np.degrees(angle)
+    for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
+        if r > 0.4:
+            panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
+    panels[0].set(title="GGX lobes", ylabel="D V [1/sr]", ylim=(0, 1.5))
+    panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
+    panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
+    panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
+    for axes in panels:
+        axes.axvline(45, color=FRAME, linewidth=0.7)
+        axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(loc="upper left", fontsize=7)
     return figure, facts
 
 
@@ -144,48 +143,40 @@ def fig3_samples(module):
     right = float(module.furnace(_mirror(module, r), np.array([z]))[0, 0])
     spread = weights.std() / np.sqrt(n)
     facts = {
-        "no weight is above 1": (float(weights.max()), 0.5, 1 + 1e-9),
-        "the mean weight is the albedo within four standard errors": (
-            float(abs(weights.mean() - right) / spread),
-            0,
-            4,
+        "no weight is above 1": Fact(weights.max(), 0.5, 1 + 1e-9, red="pdf_half"),
+        "the mean weight is the albedo within four standard errors": Fact(
+            abs(weights.mean() - right) / spread, 0, 4, red="sample_half_ball"
         ),
-        "uniform directions are more than three times as noisy": (
-            float(plain.std() / weights.std()),
-            3,
-            100,
+        "uniform directions are more than three times as noisy": Fact(
+            plain.std() / weights.std(), 3, 100, red="pdf_all_facets"
         ),
-        "for both viewers about a tenth lies below the surface": (
-            float(np.abs(np.array(below) - 0.1).max()),
-            0,
-            0.02,
+        "for both viewers about a tenth lies below the surface": Fact(
+            np.abs(np.array(below) - 0.1).max(), 0, 0.02, red="sample_all_facets"
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        panels = figure.subplots(1, 3)
-        x = np.linspace(-1, 1, 121)
-        px, py = (each.ravel() for each in np.meshgrid(x, x))
-        pz = np.sqrt(np.maximum(1 - px**2 - py**2, 0))
-        grid = np.stack([px, py, pz], axis=1)
-        for axes, (z, wo, wi) in zip(panels[:2], panels_of, strict=True):
-            density = module.ggx_pdf(np.tile(wo[:1], (len(grid), 1)), grid, np.full(len(grid), r))
-            density = np.where(px**2 + py**2 < 0.995, density, np.nan).reshape(121, 121)
-            axes.imshow(density, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", vmin=0)
-            shown = wi[(wi[:, 2] > 0)][:350]
-            axes.plot(shown[:, 0], shown[:, 1], ".", color="white", markersize=1.6)
-            axes.plot(wo[0, 0], 0, "o", markerfacecolor="none", color=CRIMSON, markersize=6)
-            axes.set(title=f"viewer at cosine {z:g}", xticks=[], yticks=[], xlabel="x")
-            axes.set_ylabel("y")
-        axes = panels[2]
-        bins = np.linspace(0, 4, 41)
-        axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="uniform sampling")
-        axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible normals")
-        axes.axvline(right, color=CRIMSON, linewidth=1)
-        axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
-        axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.legend(fontsize=6.5)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, panels = subplots(7.0, 2.7, 1, 3)
+    x = np.linspace(-1, 1, 121)
+    px, py = (each.ravel() for each in np.meshgrid(x, x))
+    pz = np.sqrt(np.maximum(1 - px**2 - py**2, 0))
+    grid = np.stack([px, py, pz], axis=1)
+    for axes, (z, wo, wi) in zip(panels[:2], panels_of, strict=True):
+        density = module.ggx_pdf(np.tile(wo[:1], (len(grid), 1)), grid, np.full(len(grid), r))
+        density = np.where(px**2 + py**2 < 0.995, density, np.nan).reshape(121, 121)
+        axes.imshow(density, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", vmin=0)
+        shown = wi[(wi[:, 2] > 0)][:350]
+        axes.plot(shown[:, 0], shown[:, 1], ".", color="white", markersize=1.6)
+        axes.plot(wo[0, 0], 0, "o", markerfacecolor="none", color=CRIMSON, markersize=6)
+        axes.set(title=f"viewer at cosine {z:g}", xticks=[], yticks=[], xlabel="x")
+        axes.set_ylabel("y")
+    axes = panels[2]
+    bins = np.linspace(0, 4, 41)
+    axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="uniform sampling")
+    axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible normals")
+    axes.axvline(right, color=CRIMSON, linewidth=1)
+    axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.legend(fontsize=6.5)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -206,24 +197,24 @@ def fig4_blend(module):
     mixed = np.array([module.furnace(premixed(m), view)[0, 0] for m in metalness])
     straight = blended[0] + metalness * (blended[-1] - blended[0])
     facts = {
-        "blended, half metal returns 0.937": (float(blended[5]), 0.9365, 0.9375),
-        "premixed it returns 0.698": (float(mixed[5]), 0.6975, 0.6985),
-        "blended it is a straight line": (float(np.abs(blended - straight).max()), 0, 1e-12),
-        "premixed it is darker than both ends": (
-            float(mixed[5] / min(mixed[0], mixed[-1])),
-            0.5,
-            0.9,
+        "blended, half metal returns 0.937": Fact(
+            blended[5], 0.9365, 0.9375, red="gltf_varnish_added"
+        ),
+        "premixed it returns 0.698": Fact(mixed[5], 0.6975, 0.6985, red="lobe_uncorrelated"),
+        "blended it is a straight line": Fact(
+            np.abs(blended - straight).max(), 0, 1e-12, red="gltf_premixed"
+        ),
+        "premixed it is darker than both ends": Fact(
+            mixed[5] / min(mixed[0], mixed[-1]), 0.5, 0.9, red="lobe_half"
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(6.0, 2.7), layout="constrained")
-        axes = figure.subplots()
-        axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="BRDFs blended")
-        axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
-        axes.axhline(1, color=FRAME, linewidth=0.8)
-        axes.set(xlabel="metalness", ylabel="directional albedo", ylim=(0.6, 1.05))
-        axes.legend(loc="lower left", fontsize=7)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure, axes = subplots(6.0, 2.7)
+    axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="BRDFs blended")
+    axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
+    axes.axhline(1, color=FRAME, linewidth=0.8)
+    axes.set(xlabel="metalness", ylabel="directional albedo", ylim=(0.6, 1.05))
+    axes.legend(loc="lower left", fontsize=7)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
@@ -241,31 +232,30 @@ def fig5_chart(module):
     gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
     falls = [peak[1.0, r].max() for r in roughs]
     facts = {
-        "each pixel of half metal is the mean of those above and below": (
-            float(np.max(off)),
-            0,
-            1e-12,
+        "each pixel of half metal is the mean of those above and below": Fact(
+            np.max(off), 0, 1e-12, red="gltf_premixed"
         ),
-        "the metal's highlight has the base color": (
-            float(np.abs(gold / gold[0] - color / color[0]).max()),
-            0,
-            0.05,
+        "the metal's highlight has the base color": Fact(
+            np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
         ),
-        "the coating's highlight is nearly white": (float(white[2] / white[0]), 0.75, 1.0),
-        "the metal's highlight gets darker to the right": bool((np.diff(falls) < 0).all()),
+        "the coating's highlight is nearly white": Fact(
+            white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
+        ),
+        "the metal's highlight gets darker to the right": Fact(
+            (np.diff(falls) < 0).all(), red="lobe_no_masking"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.4))
-        for row, m in enumerate(metals):
-            for column, r in enumerate(roughs):
-                axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
-                picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
-                # Fewer levels make a smaller file.
-                axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
-                axes.set_axis_off()
-                if row == 0:
-                    axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
-            figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
+    figure = Figure(figsize=(7.0, 4.4))
+    for row, m in enumerate(metals):
+        for column, r in enumerate(roughs):
+            axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
+            picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
+            # Fewer levels make a smaller file.
+            axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
+            axes.set_axis_off()
+            if row == 0:
+                axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
+        figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
     return figure, facts
 
 
@@ -290,36 +280,36 @@ def fig6_by_roughness(module):
     ring = (center > 14) & (center < 26)
     dark = wi[:, 2] <= 0
     facts = {
-        "the middle of the highlight gets darker": (float(slope[middle]), -1e9, -1),
-        "the ring around it gets brighter": (float((slope[ring] > 0).mean()), 0.95, 1),
-        "a step of 0.02 differs by up to 13 % of the largest derivative": (
-            float(np.abs(told - change).max() / np.abs(told).max()),
-            0.12,
-            0.13,
+        "the middle of the highlight gets darker": Fact(slope[middle], -1e9, -1, red="back_no_D"),
+        "the ring around it gets brighter": Fact(
+            (slope[ring] > 0).mean(), 0.95, 1, red="back_q_sign"
         ),
-        "in the shadow it is exactly zero": (float(np.abs(slope[dark]).max()), 0, 0),
+        "a step of 0.02 differs by up to 13 % of the largest derivative": Fact(
+            np.abs(told - change).max() / np.abs(told).max(), 0.12, 0.13, red="back_of_alpha"
+        ),
+        "in the shadow it is exactly zero": Fact(
+            np.abs(slope[dark]).max(), 0, 0, red="back_rows_summed"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        panels = figure.subplots(1, 3)
-        picture = np.ones((size, size, 3))
-        picture[inside] = srgb_encode(
-            np.clip(module.gltf(wo, wi, *given, np.full(n, r)) * cosine, 0, 1)
-        )
-        panels[0].imshow(picture)
-        panels[0].set_title("plastic, roughness 0.35")
-        top = float(np.quantile(np.abs(slope), 0.99))
-        for axes, values, title in (
-            (panels[1], slope, "∂ brightness / ∂ roughness"),
-            (panels[2], change / step, "finite difference, step 0.02"),
-        ):
-            field = np.full((size, size), np.nan)
-            field[inside] = values
-            image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
-            axes.set_title(title)
-        for axes in panels:
-            axes.set_axis_off()
-        figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
+    figure, panels = subplots(7.0, 2.6, 1, 3)
+    picture = np.ones((size, size, 3))
+    picture[inside] = srgb_encode(
+        np.clip(module.gltf(wo, wi, *given, np.full(n, r)) * cosine, 0, 1)
+    )
+    panels[0].imshow(picture)
+    panels[0].set_title("plastic, roughness 0.35")
+    top = float(np.quantile(np.abs(slope), 0.99))
+    for axes, values, title in (
+        (panels[1], slope, "∂ brightness / ∂ roughness"),
+        (panels[2], change / step, "finite difference, step 0.02"),
+    ):
+        field = np.full((size, size), np.nan)
+        field[inside] = values
+        image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
+        axes.set_title(title)
+    for axes in panels:
+        axes.set_axis_off()
+    figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
     return figure, facts
 
 
@@ -376,67 +366,6 @@ def _ball(module, size, color, m, r):
     return image
 
 
-FIGURES = {
-    "fig1_furnace": fig1_furnace,
-    "fig2_lobes": fig2_lobes,
-    "fig3_samples": fig3_samples,
-    "fig4_blend": fig4_blend,
-    "fig5_chart": fig5_chart,
-    "fig6_by_roughness": fig6_by_roughness,
-}
-RED = {
-    "fig1_furnace": "furnace_no_cosine",
-    "fig2_lobes": "lobe_not_squared",
-    "fig3_samples": "sample_all_facets",
-    "fig4_blend": "gltf_premixed",
-    "fig5_chart": "gltf_tinted_varnish",
-    "fig6_by_roughness": "back_q_sign",
-}
-# A mutant for each fact.
-RED_FACTS = {
-    "fig1_furnace": {
-        "microfacets of roughness 1 return 1 - ln 2 straight up": "lobe_printed",
-        "no microfacets return more than arrives": "lobe_no_masking",
-        "Burley's, roughness 1, returns 1.46 at 0.05": "furnace_mean",
-        "Burley's, roughness 1, is above 1 everywhere": "furnace_over_pi",
-        "Burley's, roughness 0.3, is nowhere above 1": "furnace_no_cosine",
-        "corrected it nowhere returns more than arrives": "furnace_viewer_cosine",
-        "white plastic of roughness 0.6 returns 1.06 at 0.1": "gltf_ground_keeps_all",
-    },
-    "fig2_lobes": {
-        "at roughness 0.4 the peak lies within 3 degrees of it": "lobe_not_squared",
-        "at roughness 0.6 it lies 11.5 degrees beyond": "lobe_no_roots",
-        "at roughness 0.8 it is brightest from the horizon": "lobe_facets_stretched",
-        "40 degrees away GGX has 1000 times Phong's light or more": "lobe_beckmann",
-    },
-    "fig3_samples": {
-        "no weight is above 1": "pdf_half",
-        "the mean weight is the albedo within four standard errors": "sample_half_ball",
-        "uniform directions are more than three times as noisy": "pdf_all_facets",
-        "for both viewers about a tenth lies below the surface": "sample_all_facets",
-    },
-    "fig4_blend": {
-        "blended, half metal returns 0.937": "gltf_varnish_added",
-        "premixed it returns 0.698": "lobe_uncorrelated",
-        "blended it is a straight line": "gltf_premixed",
-        "premixed it is darker than both ends": "lobe_half",
-    },
-    "fig5_chart": {
-        "each pixel of half metal is the mean of those above and below": "gltf_premixed",
-        "the metal's highlight has the base color": "gltf_metalness_reversed",
-        "the coating's highlight is nearly white": "gltf_tinted_varnish",
-        "the metal's highlight gets darker to the right": "lobe_no_masking",
-    },
-    "fig6_by_roughness": {
-        "the middle of the highlight gets darker": "back_no_D",
-        "the ring around it gets brighter": "back_q_sign",
-        "a step of 0.02 differs by up to 13 % of the largest derivative": "back_of_alpha",
-        "in the shadow it is exactly zero": "back_rows_summed",
-    },
-}
-HELD = {
-    "fig1_furnace": {
-        "as printed, Cook and Torrance's returns four times as much": "about a model that is given"
-    },
-    "fig2_lobes": {"Phong's peak lies in the mirror direction": "about a model that is given"},
-}
+FIGURES = figures_of(
+    fig1_furnace, fig2_lobes, fig3_samples, fig4_blend, fig5_chart, fig6_by_roughness
+)

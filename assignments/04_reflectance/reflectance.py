@@ -11,7 +11,18 @@ how far you are. The other functions are given and stay as they are. All numbers
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Numbers = Annotated[np.ndarray, "N"]
+Directions = Annotated[np.ndarray, "N 3"]  # unit vectors
+Colors = Annotated[np.ndarray, "N 3"]
+Albedos = Annotated[np.ndarray, "K C"]
+Pairs = Annotated[np.ndarray, "N 2"]
+Model = Callable[[Directions, Directions], Colors]
 
 # Geometry ----------------------------------------------------------------------------------------
 
@@ -97,7 +108,7 @@ def cook_torrance(wo, wi, f0, rms_slope, printed=False):
 # Your tasks ---------------------------------------------------------------------------------------
 
 
-def furnace(f, cosines):
+def furnace(f: Model, cosines: Numbers) -> Albedos:
     """The furnace test: directional albedo, the reflected fraction of uniform light.
 
     Args:
@@ -118,7 +129,7 @@ def furnace(f, cosines):
     # <<< solution
 
 
-def ggx_lobe(wo, wi, roughness):
+def ggx_lobe(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
     """The GGX lobe of a microfacet model without the Fresnel factor: D V of the handout.
 
     Args:
@@ -140,7 +151,7 @@ def ggx_lobe(wo, wi, roughness):
     # <<< solution
 
 
-def ggx_pdf(wo, wi, roughness):
+def ggx_pdf(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
     """The density of `sample_ggx` per solid angle.
 
     Args:
@@ -162,7 +173,7 @@ def ggx_pdf(wo, wi, roughness):
     # <<< solution
 
 
-def sample_ggx(wo, roughness, u2):
+def sample_ggx(wo: Directions, roughness: Numbers, u2: Pairs) -> Directions:
     """Sample a visible normal of GGX for wo, and reflect wo at it.
 
     Args:
@@ -189,7 +200,9 @@ def sample_ggx(wo, roughness, u2):
     # <<< solution
 
 
-def gltf(wo, wi, base_color, metalness, roughness):
+def gltf(
+    wo: Directions, wi: Directions, base_color: Colors, metalness: Numbers, roughness: Numbers
+) -> Colors:
     """The glTF material: a diffuse base layer under a specular coating, a metal, or a blend.
 
     Args:
@@ -211,7 +224,14 @@ def gltf(wo, wi, base_color, metalness, roughness):
     # <<< solution
 
 
-def gltf_backward(wo, wi, base_color, metalness, roughness, d_f):
+def gltf_backward(
+    wo: Directions,
+    wi: Directions,
+    base_color: Colors,
+    metalness: Numbers,
+    roughness: Numbers,
+    d_f: Colors,
+) -> tuple[Colors, Numbers, Numbers]:
     """The adjoint of `gltf` with respect to its parameters; directions are held fixed.
 
     Args:

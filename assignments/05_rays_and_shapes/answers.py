@@ -1,7 +1,5 @@
 """Right answers to the generated questions, computed with the solution."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

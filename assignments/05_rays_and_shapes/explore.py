@@ -7,8 +7,6 @@
 # glass) and `--rays` (to compare with the core).
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 

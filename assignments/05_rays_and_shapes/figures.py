@@ -8,11 +8,9 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 
 
 def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
@@ -33,29 +31,19 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
         missed.append(1 - kept.mean())
         quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
     facts: Facts = {
-        "the quadratic is off by more than a centimeter from 1e7": (quadratic[7], 1e-2, 10.0),
-        "from 1e8 by more than the radius": (quadratic[8], 1.0, 1e3),
-        "from 1e8 it misses a tenth or more": (float(missed[8]), 0.1, 1.0),
-        "ours below 1e-7 at 1e8": (ours[8], 0.0, 1e-7),
+        "the quadratic is off by more than a centimeter from 1e7": Fact(quadratic[7], 1e-2, 10.0),
+        "from 1e8 by more than the radius": Fact(quadratic[8], 1.0, 1e3),
+        "from 1e8 it misses a tenth or more": Fact(missed[8], 0.1, 1.0),
+        "ours below 1e-7 at 1e8": Fact(ours[8], 0.0, 1e-7),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        tiny = 1e-17
-        axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
-        axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
-        axes.annotate(
-            "quadratic",
-            (away[6], quadratic[6]),
-            (-58, 2),
-            color=CRIMSON,
-            textcoords="offset points",
-        )
-        axes.annotate(
-            "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE, textcoords="offset points"
-        )
-        axes.set(xlabel="distance of the origin  [radii]", ylabel="error of the hit  [radii]")
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.9)
+    tiny = 1e-17
+    axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
+    axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
+    note(axes, "quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON)
+    note(axes, "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE)
+    axes.set(xlabel="distance of the origin  [radii]", ylabel="error of the hit  [radii]")
+    plain_axes(axes)
     return figure, facts
 
 
@@ -86,30 +74,24 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     lost_by_corner = ~_from_a_corner(places - 4 * ways, ways, corners).any(axis=1)
     facts: Facts = {
-        "none misses": bool(not any(lost)),
-        "relative to a corner more than one in a hundred": (
-            float(np.mean(lost_by_corner)),
-            0.01,
-            1.0,
-        ),
-        "weights reproduce the hit point": (float(max(sums, default=1.0)), 0.0, 1e-12),
+        "none misses": Fact(not any(lost)),
+        "relative to a corner more than one in a hundred": Fact(np.mean(lost_by_corner), 0.01, 1.0),
+        "weights reproduce the hit point": Fact(max(sums, default=1.0), 0.0, 1e-12),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
-        left.plot([0, 1], [0, 1], color="white", linewidth=0.8)
-        for triangle in square[:, :, :2]:
-            for letter, corner in zip("abc", triangle, strict=True):
-                place = corner + 0.17 * (triangle.mean(axis=0) - corner)
-                left.annotate(letter, place, color="white", ha="center", va="center")
-        left.set(xticks=[], yticks=[], title="weights of a, b, c")
-        for one, two in ends:
-            right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
-        right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
-        right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
-        title = f"misses relative to a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
-        right.set(xticks=[], yticks=[], aspect="equal", title=title)
+    figure, (left, right) = subplots(7.0, 3.3, 1, 2)
+    left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
+    left.plot([0, 1], [0, 1], color="white", linewidth=0.8)
+    for triangle in square[:, :, :2]:
+        for letter, corner in zip("abc", triangle, strict=True):
+            place = corner + 0.17 * (triangle.mean(axis=0) - corner)
+            left.annotate(letter, place, color="white", ha="center", va="center")
+    left.set(xticks=[], yticks=[], title="weights of a, b, c")
+    for one, two in ends:
+        right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
+    right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
+    right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
+    title = f"misses relative to a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
+    right.set(xticks=[], yticks=[], aspect="equal", title=title)
     return figure, facts
 
 
@@ -133,27 +115,25 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
     critical = np.degrees(angle[got_out].max(initial=0.0))
     facts: Facts = {
-        "rays near the axis cross 1.5 radii behind the center": (float(crossing[-1]), 1.48, 1.5),
-        "the outer ones nearer": bool(0.5 < crossing[0] < 1.2),
-        "all enter and leave": bool(entered.all() and left_it.all()),
-        "nothing leaves beyond 41.8 degrees": (float(critical), 41.3, 41.9),
+        "rays near the axis cross 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
+        "the outer ones nearer": Fact(0.5 < crossing[0] < 1.2),
+        "all enter and leave": Fact(entered.all() and left_it.all()),
+        "nothing leaves beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
-        for r in range(13):
-            path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
-            left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
-        left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
-        left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
-        degrees = np.degrees(angle)
-        right.plot(degrees, _angle(bent), color=BLUE)
-        right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
-        right.annotate("into glass", (60, 35), (0, -14), color=BLUE, textcoords="offset points")
-        right.annotate("out of glass", (35, 60), (-52, 4), color=ORANGE, textcoords="offset points")
-        right.set(xlabel="incidence  [°]", ylabel="refraction  [°]", xlim=(0, 90), ylim=(0, 90))
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
+    left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
+    for r in range(13):
+        path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
+        left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
+    left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
+    left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
+    degrees = np.degrees(angle)
+    right.plot(degrees, _angle(bent), color=BLUE)
+    right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
+    note(right, "into glass", (60, 35), (0, -14), color=BLUE)
+    note(right, "out of glass", (35, 60), (-52, 4), color=ORANGE)
+    right.set(xlabel="incidence  [°]", ylabel="refraction  [°]", xlim=(0, 90), ylim=(0, 90))
+    plain_axes(right)
     return figure, facts
 
 
@@ -185,34 +165,30 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     ends = [module.march_sdf(_ball(1 + e), origins, ways, 20.0, 3000)[0] for e in (-eps, eps)]
     apart = (_finite(ends[1]) - _finite(ends[0])) / (2 * eps)
     facts: Facts = {
-        "both hit the wall": bool(max(abs(each[1] - 6) for each in walks) < 1e-8),
-        "the grazing ray takes three times as many evaluations or more": (
-            len(walks[0][0]) / len(walks[1][0]),
-            3.0,
-            30.0,
+        "both hit the wall": Fact(max(abs(each[1] - 6) for each in walks) < 1e-8),
+        "the grazing ray takes three times as many evaluations or more": Fact(
+            len(walks[0][0]) / len(walks[1][0]), 3.0, 30.0
         ),
-        "no step is longer than the distance": bool(
+        "no step is longer than the distance": Fact(
             len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()
         ),
-        "finite differences agree": (float(np.abs(slopes - apart).max()), 0.0, 1e-3),
-        "toward the silhouette it grows": bool(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
+        "finite differences agree": Fact(np.abs(slopes - apart).max(), 0.0, 1e-3),
+        "toward the silhouette it grows": Fact(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
-        left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
-        left.axvline(3, color=INK)
-        for (walk, _), color in zip(walks, (BLUE, ORANGE), strict=True):
-            left.plot([-3, 3], walk[[0, 0], 1], color=color, linewidth=0.6)
-            for place in walk[:60]:
-                free = abs(float(scene(place[None])[0][0]))
-                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=color, linewidth=0.6))
-            left.plot(*walk[:, :2].T, ".", color=color, markersize=3)
-        left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
-        right.plot(y, slopes, color=BLUE)
-        right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
-        right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 3.2, 1, 2, width_ratios=(1.4, 1))
+    left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
+    left.axvline(3, color=INK)
+    for (walk, _), color in zip(walks, (BLUE, ORANGE), strict=True):
+        left.plot([-3, 3], walk[[0, 0], 1], color=color, linewidth=0.6)
+        for place in walk[:60]:
+            free = abs(float(scene(place[None])[0][0]))
+            left.add_patch(Circle(place[:2], free, fill=False, edgecolor=color, linewidth=0.6))
+        left.plot(*walk[:, :2].T, ".", color=color, markersize=3)
+    left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
+    right.plot(y, slopes, color=BLUE)
+    right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
+    right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
+    plain_axes(right)
     return figure, facts
 
 
@@ -234,36 +210,26 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
-        "the hits are those of testing every triangle": bool(
+        "the hits are those of testing every triangle": Fact(
             np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
         ),
-        "a miss of the root tests one box": bool(counts.min() == 1),
-        "the most expensive pixel tests some 60": (int(counts.max()), 45, 75),
-        "from 256 to 4096 less than twice as many": (means[3] / means[1], 1.0, 2.0),
-        "with 256 triangles about 25": (means[1], 22.0, 28.0),
+        "a miss of the root tests one box": Fact(counts.min() == 1),
+        "the most expensive pixel tests some 60": Fact(int(counts.max()), 45, 75),
+        "from 256 to 4096 less than twice as many": Fact(means[3] / means[1], 1.0, 2.0),
+        "with 256 triangles about 25": Fact(means[1], 22.0, 28.0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
-        figure.colorbar(drawn, ax=left, label="tested boxes", shrink=0.8)
-        left.set(xticks=[], yticks=[])
-        right.loglog(sizes, sizes, color=GRAY, linewidth=1)
-        right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
-        right.annotate(
-            "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK, textcoords="offset points"
-        )
-        right.annotate(
-            "boxes of the tree",
-            (sizes[1], means[1]),
-            (-20, -16),
-            color=BLUE,
-            textcoords="offset points",
-        )
-        right.set(xlabel="triangles", ylabel="tests per ray", ylim=(5, 8000))
-        right.set_xticks(sizes, [str(k) for k in sizes])
-        right.minorticks_off()
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
+    drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
+    figure.colorbar(drawn, ax=left, label="tested boxes", shrink=0.8)
+    left.set(xticks=[], yticks=[])
+    right.loglog(sizes, sizes, color=GRAY, linewidth=1)
+    right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
+    note(right, "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK)
+    note(right, "boxes of the tree", (sizes[1], means[1]), (-20, -16), color=BLUE)
+    right.set(xlabel="triangles", ylabel="tests per ray", ylim=(5, 8000))
+    right.set_xticks(sizes, [str(k) for k in sizes])
+    right.minorticks_off()
+    plain_axes(right)
     return figure, facts
 
 
@@ -350,13 +316,7 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
     return asked, found
 
 
-FIGURES = {
-    "fig1_far": fig1_far,
-    "fig2_edges": fig2_edges,
-    "fig3_glass": fig3_glass,
-    "fig4_march": fig4_march,
-    "fig5_tree": fig5_tree,
-}
+FIGURES = figures_of(fig1_far, fig2_edges, fig3_glass, fig4_march, fig5_tree)
 RED = {
     "fig1_far": "sphere_quadratic",
     "fig2_edges": "triangle_cramer",

@@ -12,7 +12,24 @@ far you are. The other functions are given and stay as they are. Values are floa
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vector = Annotated[np.ndarray, "3"]
+Vectors = Annotated[np.ndarray, "R 3"]
+PerRay = Annotated[np.ndarray, "R"]
+Triangles = Annotated[np.ndarray, "M 3 3"]
+PerTriangle = Annotated[np.ndarray, "M"]
+Weights = Annotated[np.ndarray, "M 2"]
+Boxes = Annotated[np.ndarray, "N 2 3"]
+Box = Annotated[np.ndarray, "2 3"]
+PerPrimitive = Annotated[np.ndarray, "K"]
+Corners = Annotated[np.ndarray, "P 3"]
+Indices = Annotated[np.ndarray, "N"]  # int64
+Sdf = Callable[[Vectors], tuple[PerRay, Vectors, PerRay]]
 
 T_MIN = 1e-9  # nearer intersections do not count
 CLOSE = 1e-9  # distance below which sphere tracing has converged
@@ -38,7 +55,7 @@ def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
     return np.tile(world_from_camera[:, 3], (len(u), 1)), directions
 
 
-def hit_sphere(origins, directions, center, radius):
+def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: float) -> PerRay:
     """Intersections of rays with a sphere.
 
     Args:
@@ -62,7 +79,9 @@ def hit_sphere(origins, directions, center, radius):
     # <<< solution
 
 
-def hit_triangle(origin, direction, corners):
+def hit_triangle(
+    origin: Vector, direction: Vector, corners: Triangles
+) -> tuple[PerTriangle, Weights]:
     """Intersections of one ray with many triangles, from either side.
 
     Args:
@@ -88,7 +107,7 @@ def hit_triangle(origin, direction, corners):
     # <<< solution
 
 
-def refract(directions, normals, eta):
+def refract(directions: Vectors, normals: Vectors, eta: float) -> tuple[Vectors, PerRay]:
     """Refraction or total internal reflection at a smooth surface, by Snell's law.
 
     Args:
@@ -114,7 +133,9 @@ def refract(directions, normals, eta):
     # <<< solution
 
 
-def march_sdf(sdf, origins, directions, t_max, steps):
+def march_sdf(
+    sdf: Sdf, origins: Vectors, directions: Vectors, t_max: float, steps: int
+) -> tuple[PerRay, PerRay]:
     """Sphere tracing of a signed distance field, and the derivative of t.
 
     Args:
@@ -148,7 +169,7 @@ def march_sdf(sdf, origins, directions, t_max, steps):
     # <<< solution
 
 
-def build_bvh(low, high):
+def build_bvh(low: Corners, high: Corners) -> tuple[Boxes, Indices, Indices, Indices]:
     """A bounding volume hierarchy of primitives, given by their boxes.
 
     Args:
@@ -182,7 +203,15 @@ def build_bvh(low, high):
     # <<< solution
 
 
-def traverse(first, count, order, box, meet, origin, direction):
+def traverse(
+    first: Indices,
+    count: Indices,
+    order: Indices,
+    box: Callable[[int], Box],
+    meet: Callable[[Indices], PerPrimitive],
+    origin: Vector,
+    direction: Vector,
+) -> tuple[float, int]:
     """The closest hit of a ray, with few tests.
 
     Args:

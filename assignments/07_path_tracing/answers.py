@@ -1,7 +1,5 @@
 """Right answers to the generated questions, worked out with the solution."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -7,8 +7,6 @@
 # table; the stored results are for 0.35, and with another value your own image is fitted).
 
 # %%
-from __future__ import annotations
-
 import importlib
 import sys
 import time

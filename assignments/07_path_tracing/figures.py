@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import UP
 from matplotlib.figure import Figure
-from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
-UP = np.array([0.0, 1.0, 0.0])
 GAMMA = 1 / 2.2
 
 
@@ -33,45 +33,25 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         ours.append(weights @ (cosine / np.where(pdf > 0, pdf, 1)))
         by_area.append(weights @ cosine)
         no_cosine.append(weights @ (cosine / distance**2))
-        right.append(_irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
+        right.append(parts.irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
     ours, by_area, no_cosine, right = (np.array(e) for e in (ours, by_area, no_cosine, right))
     facts: Facts = {
-        "dots on the line": (float(np.abs(ours / right - 1).max()), 0.0, 1e-6),
-        "per area 4 times too bright or more": (float((by_area / right).min()), 4.0, 8.0),
-        "more than 40 times at 4 m": (float(by_area[-1] / right[-1]), 40.0, 48.0),
-        "without the cosine right below the light": (float(no_cosine[0] / right[0]), 1.0, 1.1),
-        "at 4 m twice as bright or more": (float(no_cosine[-1] / right[-1]), 2.0, 3.0),
+        "dots on the line": Fact(np.abs(ours / right - 1).max(), 0.0, 1e-6),
+        "per area 4 times too bright or more": Fact((by_area / right).min(), 4.0, 8.0),
+        "more than 40 times at 4 m": Fact(by_area[-1] / right[-1], 40.0, 48.0),
+        "without the cosine right below the light": Fact(no_cosine[0] / right[0], 1.0, 1.1),
+        "at 4 m twice as bright or more": Fact(no_cosine[-1] / right[-1], 2.0, 3.0),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        axes = figure.subplots()
-        axes.semilogy(aside, right, color=GRAY)
-        axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
-        axes.semilogy(aside, by_area, color=CRIMSON)
-        axes.semilogy(aside, no_cosine, color=ORANGE)
-        axes.annotate(
-            "density per area",
-            (2.6, by_area[21]),
-            (0, 5),
-            color=CRIMSON,
-            textcoords="offset points",
-        )
-        axes.annotate(
-            "without the cosine at the light",
-            (2.6, no_cosine[21]),
-            (0, 8),
-            color=ORANGE,
-            textcoords="offset points",
-        )
-        axes.annotate(
-            "yours, and Lambert's formula",
-            (1.2, right[10]),
-            (-60, -24),
-            color=BLUE,
-            textcoords="offset points",
-        )
-        axes.set(xlabel="horizontal distance  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.9)
+    axes.semilogy(aside, right, color=GRAY)
+    axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
+    axes.semilogy(aside, by_area, color=CRIMSON)
+    axes.semilogy(aside, no_cosine, color=ORANGE)
+    note(axes, "density per area", (2.6, by_area[21]), (0, 5), color=CRIMSON)
+    note(axes, "without the cosine at the light", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
+    note(axes, "yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE)
+    axes.set(xlabel="horizontal distance  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -97,7 +77,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     rng = np.random.default_rng(3)
     many = module.repeated(module.some(hit, on), samples)
     u = rng.random((2, len(many["thing"]), 3))
-    pictures = [*_alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
+    pictures = [*parts.alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
     pictures = [p[:, 0].reshape(-1, samples) for p in pictures]
     strip = hit["thing"][on]
     # Error of a sample over the brightness of the strip, both as root mean squares: dark pixels, of
@@ -115,38 +95,34 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     means = np.array([[p[strip == k].mean() for k in range(4)] for p in pictures])
     best = spread[:2].min(axis=0)
     facts: Facts = {
-        "light sampling: noisy where it is smooth": (spread[0, 0] / spread[0, 3], 3.0, 30.0),
-        "BSDF sampling: noisy where it is rough": (spread[1, 3] / spread[1, 0], 1.5, 10.0),
-        "its tallest bar is the rough strip's": bool(spread[1].argmax() == 3),
-        "smooth: light sampling is noisier": (spread[0, 0] / spread[1, 0], 1.5, 30.0),
-        "rough: BSDF sampling is noisier": (spread[1, 3] / spread[0, 3], 1.5, 30.0),
-        "both: never much worse than the better one": (float((spread[2] / best).max()), 0.2, 1.3),
-        "smooth: the mean of BSDF sampling": (means[2, 0] / means[1, 0], 0.8, 1.25),
-        "rough: the mean of light sampling": (means[2, 3] / means[0, 3], 0.8, 1.25),
+        "light sampling: noisy where it is smooth": Fact(spread[0, 0] / spread[0, 3], 3.0, 30.0),
+        "BSDF sampling: noisy where it is rough": Fact(spread[1, 3] / spread[1, 0], 1.5, 10.0),
+        "its tallest bar is the rough strip's": Fact(spread[1].argmax() == 3),
+        "smooth: light sampling is noisier": Fact(spread[0, 0] / spread[1, 0], 1.5, 30.0),
+        "rough: BSDF sampling is noisier": Fact(spread[1, 3] / spread[0, 3], 1.5, 30.0),
+        "both: never much worse than the better one": Fact((spread[2] / best).max(), 0.2, 1.3),
+        "smooth: the mean of BSDF sampling": Fact(means[2, 0] / means[1, 0], 0.8, 1.25),
+        "rough: the mean of light sampling": Fact(means[2, 3] / means[0, 3], 0.8, 1.25),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-        axes = figure.subplots(2, 3, height_ratios=(1.3, 1))
-        for column, (name, p) in enumerate(
-            zip(("light sampling", "BSDF sampling", "both (MIS)"), pictures, strict=True)
-        ):
-            shown = np.zeros(width * height)
-            shown[on] = p[:, :shown_ones].mean(axis=1)
-            shown[hit["thing"] == 4] = 1.5
-            gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
-            axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
-            axes[0, column].set(xticks=[], yticks=[], title=name)
-            for k, each in enumerate(roughness):  # the roughness of the strip, at its front edge
-                low = np.flatnonzero(on)[strip == k].max() // width
-                row = np.flatnonzero(on)[strip == k]
-                middle = np.median(row[row // width == low] % width)
-                axes[0, column].text(
-                    middle, low - 1, str(each), color="white", ha="center", fontsize=7
-                )
-            axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
-            axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
-            axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
-        axes[1, 0].set(ylabel="noise / brightness")
+    figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.3, 1))
+    for column, (name, p) in enumerate(
+        zip(("light sampling", "BSDF sampling", "both (MIS)"), pictures, strict=True)
+    ):
+        shown = np.zeros(width * height)
+        shown[on] = p[:, :shown_ones].mean(axis=1)
+        shown[hit["thing"] == 4] = 1.5
+        gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
+        axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
+        axes[0, column].set(xticks=[], yticks=[], title=name)
+        for k, each in enumerate(roughness):  # the roughness of the strip, at its front edge
+            low = np.flatnonzero(on)[strip == k].max() // width
+            row = np.flatnonzero(on)[strip == k]
+            middle = np.median(row[row // width == low] % width)
+            axes[0, column].text(middle, low - 1, str(each), color="white", ha="center", fontsize=7)
+        axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
+        axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
+        axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
+    axes[1, 0].set(ylabel="noise / brightness")
     return figure, facts
 
 
@@ -162,7 +138,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
         seen = module.trace_paths(scene, *many, depth, rng)
         pictures.append(seen.reshape(height * width, -1, 3).mean(axis=1))
     albedo, depths = 0.6, np.arange(1, 8)
-    room, origins, directions = _furnace(module, albedo, 700, rng)
+    room, origins, directions = parts.furnace(module, albedo, 700, rng)
     means, errors, double = [], [], []
     for depth in depths:
         seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
@@ -174,26 +150,24 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
     off = np.abs(np.array(means) - right) / np.maximum(errors, 1e-3)
     ceiling = [float(each.reshape(height, width, 3)[0, 12:24].mean()) for each in pictures[1:]]
     facts: Facts = {
-        "depth 1 is the light alone": (float((pictures[0].sum(axis=1) > 0).mean()), 0.003, 0.1),
-        "direct light leaves the ceiling black": (ceiling[0], 0.0, 1e-9),
-        "bounces light it": (ceiling[1], 0.02, 1.0),
-        "dots on the line": (float(off.max()), 0.0, 4.5),
-        "counted twice: too bright from depth 3 on": bool(
+        "depth 1 is the light alone": Fact((pictures[0].sum(axis=1) > 0).mean(), 0.003, 0.1),
+        "direct light leaves the ceiling black": Fact(ceiling[0], 0.0, 1e-9),
+        "bounces light it": Fact(ceiling[1], 0.02, 1.0),
+        "dots on the line": Fact(off.max(), 0.0, 4.5),
+        "counted twice: too bright from depth 3 on": Fact(
             abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.3), layout="constrained")
-        axes = figure.subplots(1, 4, width_ratios=(1, 1, 1, 1.4))
-        for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
-            shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
-            axes[k].imshow(shown)
-            axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
-        axes[3].plot(depths, right, color=GRAY)
-        axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
-        axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
-        axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
-        plain_axes(axes[3])
+    figure, axes = subplots(7.0, 2.3, 1, 4, width_ratios=(1, 1, 1, 1.4))
+    for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
+        shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
+        axes[k].imshow(shown)
+        axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
+    axes[3].plot(depths, right, color=GRAY)
+    axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
+    axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
+    axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
+    plain_axes(axes[3])
     return figure, facts
 
 
@@ -201,7 +175,7 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     """Mean, vertices per path and cost, with roulette and without."""
     albedo, depths = 0.4, np.array([2, 4, 8, 12])
     rng = np.random.default_rng(5)
-    room, origins, directions = _furnace(module, albedo, 2500, rng)
+    room, origins, directions = parts.furnace(module, albedo, 2500, rng)
     see, always = module.see, module.ALWAYS
     means, visits, prices = [], [], []
     for limit in (always, 99):
@@ -229,29 +203,25 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     right = (1 - albedo**depths) / (1 - albedo)
     off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e in means)
     facts: Facts = {
-        "the means agree with the series": (off, 0.0, 4.5),
-        "with roulette below 4 vertices": (float(visits[0][-1]), 2.0, 4.0),
-        "without it as many as the depth allows": (float(visits[1][-1]), 10.0, 13.0),
-        "more expensive at depth 8": (float((prices[0] / prices[1])[2]), 1.1, 2.0),
-        "about even at depth 12": (float((prices[0] / prices[1])[3]), 0.7, 1.4),
+        "the means agree with the series": Fact(off, 0.0, 4.5),
+        "with roulette below 4 vertices": Fact(visits[0][-1], 2.0, 4.0),
+        "without it as many as the depth allows": Fact(visits[1][-1], 10.0, 13.0),
+        "more expensive at depth 8": Fact((prices[0] / prices[1])[2], 1.1, 2.0),
+        "about even at depth 12": Fact((prices[0] / prices[1])[3], 0.7, 1.4),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.4), layout="constrained")
-        axes = figure.subplots(1, 3)
-        for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
-            shift = 0.12 * (2 * k - 1)
-            axes[0].errorbar(
-                depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
-            )
-            axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
-            axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
-        axes[0].plot(depths, right, color=GRAY, zorder=0)
-        axes[1].legend(frameon=False)
-        for each, title in zip(
-            axes, ("mean", "vertices per path", "variance × vertices"), strict=True
-        ):
-            each.set(xlabel="depth", title=title)
-            plain_axes(each)
+    figure, axes = subplots(7.0, 2.4, 1, 3)
+    for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
+        shift = 0.12 * (2 * k - 1)
+        axes[0].errorbar(
+            depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
+        )
+        axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
+        axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
+    axes[0].plot(depths, right, color=GRAY, zorder=0)
+    axes[1].legend(frameon=False)
+    for each, title in zip(axes, ("mean", "vertices per path", "variance × vertices"), strict=True):
+        each.set(xlabel="depth", title=title)
+        plain_axes(each)
     return figure, facts
 
 
@@ -272,48 +242,40 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     for value in values:
         scene = module.demo_table(roughness=value)
         u = rng.random((2, n, 3))
-        parts = [
+        batches = [
             module.direct_light_backward(
                 scene, module.some(hit, rows), u[0, rows], u[1, rows], d[rows]
             )[1][0]
             for rows in np.arange(n).reshape(15, -1)
         ]
-        ours.append(sum(parts))
-        errors.append(float(np.std(parts) * np.sqrt(15)))
-        wrong.append(ours[-1] + _through_density(module, scene, hit, u[1], value))
-        ends = [_fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)]
+        ours.append(sum(batches))
+        errors.append(float(np.std(batches) * np.sqrt(15)))
+        wrong.append(ours[-1] + parts.through_density(module, scene, hit, u[1], value))
+        ends = [
+            parts.fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)
+        ]
         right.append((ends[0] - ends[1]) / 2e-3)
     ours, wrong, right, errors = (np.array(each) for each in (ours, wrong, right, errors))
-    tracks = [_descent(module, shared) for shared in (False, True)]
+    tracks = [parts.descent(module, shared) for shared in (False, True)]
     facts: Facts = {
-        "dots on the line": (float((np.abs(ours - right) / errors).max()), 0.0, 4.5),
-        "crosses are not": (float((np.abs(wrong - right) / errors).max()), 6.0, 1e4),
-        "independent numbers settle at the truth": (float(tracks[0][-40:].mean()), 0.57, 0.63),
-        "shared ones about a quarter too dark": (1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
+        "dots on the line": Fact((np.abs(ours - right) / errors).max(), 0.0, 4.5),
+        "crosses are not": Fact((np.abs(wrong - right) / errors).max(), 6.0, 1e4),
+        "independent numbers settle at the truth": Fact(tracks[0][-40:].mean(), 0.57, 0.63),
+        "shared ones about a quarter too dark": Fact(1 - tracks[1][-40:].mean() / 0.6, 0.2, 0.3),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.8), layout="constrained")
-        left, side = figure.subplots(1, 2)
-        left.plot(values, right, color=GRAY)
-        left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
-        left.plot(values, wrong, "x", color=CRIMSON)
-        left.set(xlabel="roughness", title="∂ radiance / ∂ roughness")
-        side.axhline(0.6, color=GRAY)
-        side.plot(tracks[0], color=BLUE, linewidth=1)
-        side.plot(tracks[1], color=CRIMSON, linewidth=1)
-        side.annotate(
-            "shared random numbers",
-            (60, tracks[1][60]),
-            (10, -14),
-            color=CRIMSON,
-            textcoords="offset points",
-        )
-        side.annotate(
-            "independent random numbers", (30, 0.66), (0, 8), color=BLUE, textcoords="offset points"
-        )
-        side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
-        for each in (left, side):
-            plain_axes(each)
+    figure, (left, side) = subplots(7.0, 2.8, 1, 2)
+    left.plot(values, right, color=GRAY)
+    left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
+    left.plot(values, wrong, "x", color=CRIMSON)
+    left.set(xlabel="roughness", title="∂ radiance / ∂ roughness")
+    side.axhline(0.6, color=GRAY)
+    side.plot(tracks[0], color=BLUE, linewidth=1)
+    side.plot(tracks[1], color=CRIMSON, linewidth=1)
+    note(side, "shared random numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON)
+    note(side, "independent random numbers", (30, 0.66), (0, 8), color=BLUE)
+    side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
+    for each in (left, side):
+        plain_axes(each)
     return figure, facts
 
 
@@ -336,155 +298,41 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     exact = np.array([0.8, 0.5, 0.2, 0.35])
     found = np.append(color, rough)
     facts: Facts = {
-        "your image is the core's": (_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
-        "your gradient is the core's": (_apart(mine, slope), 0.0, 0.35),
-        "base color found within 0.02": (float(np.abs(found - exact)[:3].max()), 0.0, 0.02),
-        "roughness found within 0.02": (float(abs(found - exact)[3]), 0.0, 0.02),
-        "the core as well": (float(np.abs(core - exact).max()), 0.0, 0.02),
+        "your image is the core's": Fact(parts.apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your gradient is the core's": Fact(parts.apart(mine, slope), 0.0, 0.35),
+        "base color found within 0.02": Fact(np.abs(found - exact)[:3].max(), 0.0, 0.02),
+        "roughness found within 0.02": Fact(abs(found - exact)[3], 0.0, 0.02),
+        "the core as well": Fact(np.abs(core - exact).max(), 0.0, 0.02),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-        above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
-        axes = above.subplots(1, 4)
-        for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
-            each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
-        for each, shown in zip(axes[2:], (mine, slope), strict=True):
-            each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
-        for each, name in zip(
-            axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
-        ):
-            each.set(xticks=[], yticks=[], title=name)
-        axis = below.subplots()
-        for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
-            axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
-            axis.plot(np.arange(1, 46), track[:, k], color=color)
-            axis.plot([46], [core[k]], "x", color=color)
-        for k, name in enumerate(("red", "green", "blue", "roughness")):
-            axis.annotate(name, (24, track[24, k]), (3, 4), textcoords="offset points")
-        axis.set(xlabel="step", ylim=(0, 1))
-        plain_axes(axis)
+    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
+    axes = above.subplots(1, 4)
+    for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
+        each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
+    for each, shown in zip(axes[2:], (mine, slope), strict=True):
+        each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
+    for each, name in zip(
+        axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
+    ):
+        each.set(xticks=[], yticks=[], title=name)
+    axis = below.subplots()
+    for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
+        axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
+        axis.plot(np.arange(1, 46), track[:, k], color=color)
+        axis.plot([46], [core[k]], "x", color=color)
+    for k, name in enumerate(("red", "green", "blue", "roughness")):
+        note(axis, name, (24, track[24, k]), (3, 4))
+    axis.set(xlabel="step", ylim=(0, 1))
+    plain_axes(axis)
     return figure, facts
 
 
 _SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
 
-def _irradiance(corners: Array) -> float:
-    """Lambert's formula, of a surface at the origin that faces up."""
-    d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
-    total = np.zeros(3)
-    for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
-        c = np.cross(a, b)
-        total += np.arctan2(np.linalg.norm(c), a @ b) * c / np.linalg.norm(c)
-    return float(abs(total @ UP) / 2)
-
-
-def _alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
-    """Direct light by one strategy alone, with weight 1: light sampling, BSDF sampling."""
-    found = []
-    for by_lamp in (True, False):
-        if by_lamp:
-            wi, _, lamp = module.sample_light(scene, hit["points"], u_light)
-        else:
-            wi = module.sample_brdf(scene, hit, u_surface)
-        there = module.see(scene, hit["points"], wi)
-        if by_lamp:
-            p = module.light_pdf(scene, there["thing"], wi, there["t"])
-            p = np.where(there["thing"] == lamp, p, 0.0)
-        else:
-            p = module.brdf_pdf(scene, hit, wi)
-        c = np.maximum(module.dot(wi, hit["normals"]), 0) / np.where(p > 0, p, np.inf)
-        found.append(module.brdf(scene, hit, wi) * module.emitted(scene, there) * c[:, None])
-    return found
-
-
-def _furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
-    """(scene, origins, directions): a closed cube that emits, and rays inside."""
-    faces = (
-        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
-        ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
-        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)),
-        ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
-        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)),
-        ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
-    )
-    scene = module.assemble([module.rectangle(*f, emission=1.0, base_color=albedo) for f in faces])
-    d = rng.normal(size=(n, 3))
-    return scene, np.zeros((n, 3)), d / np.linalg.norm(d, axis=1, keepdims=True)
-
-
-def _fine(module: ModuleType, scene: dict, place: dict) -> float:
-    """Mean of the channels of direct light from the one light, by a fine quadrature over it."""
-    x, w = np.polynomial.legendre.leggauss(24)
-    u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
-    hit = module.repeated(place, u.size)
-    u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
-    wi, far, _ = module.sample_light(scene, hit["points"], u3)
-    normal = module.front_normals(scene)[1]
-    area = float(np.linalg.norm(np.cross(scene["edges_u"][1], scene["edges_v"][1])))
-    light = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
-    return float((light @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
-
-
-def _through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
-    """The term that is added where the density of the material is differentiated, too."""
-    wi = module.sample_brdf(scene, hit, u)
-    there = module.see(scene, hit["points"], wi)
-    p = module.light_pdf(scene, there["thing"], wi, there["t"])
-    q = module.brdf_pdf(scene, hit, wi)
-    near = module.brdf_pdf(module.demo_table(roughness=value + 1e-4), hit, wi)
-    c = module.mis_weight(q, p) * np.maximum(module.dot(wi, hit["normals"]), 0)
-    value_of = module.brdf(scene, hit, wi) * module.emitted(scene, there)
-    return float(
-        -(value_of.mean(axis=1) * c / np.where(q > 0, q, 1) ** 2 * (near - q) / 1e-4).mean()
-    )
-
-
-def _descent(module: ModuleType, shared: bool) -> Array:
-    """A matte base color by gradient descent, one sample per pixel, 110 steps."""
-    lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
-    floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
-    scene = module.assemble([floor, lamp])
-    rng = np.random.default_rng(8)
-    n = 40
-    points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
-    hit = {
-        "points": points,
-        "normals": np.tile(UP, (n, 1)),
-        "wo": np.tile(UP, (n, 1)),
-        "front": np.ones(n, bool),
-        "t": np.ones(n),
-        "thing": np.zeros(n, int),
-    }
-    many = module.repeated(hit, 144)
-    x = (np.arange(12) + 0.5) / 12
-    even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)
-    wi, far, _ = module.sample_light(scene, many["points"], np.tile(even, (n, 1)))
-    light = (wi @ UP) ** 2 * 2.4**2 / far**2
-    picture = 0.6 / np.pi * light.reshape(n, 144).mean(axis=1)
-    track = []
-    for _ in range(110):
-        u = rng.random((4, n, 3))
-        residual = module.direct_light(scene, hit, u[0], u[1]) - picture[:, None]
-        which = u[:2] if shared else u[2:]
-        slope, _ = module.direct_light_backward(scene, hit, *which, 2 * residual / n)
-        scene["base_color"][0] = np.clip(scene["base_color"][0] - 0.15 * slope[0].mean(), 0, 1)
-        track.append(scene["base_color"][0, 0])
-    return np.array(track)
-
-
-def _apart(a: Array, b: Array) -> float:
-    return float(np.linalg.norm(a - b) / np.linalg.norm(b))
-
-
-FIGURES = {
-    "fig1_measure": fig1_measure,
-    "fig2_strategies": fig2_strategies,
-    "fig3_depth": fig3_depth,
-    "fig4_roulette": fig4_roulette,
-    "fig5_gradient": fig5_gradient,
-    "fig6_recover": fig6_recover,
-}
+FIGURES = figures_of(
+    fig1_measure, fig2_strategies, fig3_depth, fig4_roulette, fig5_gradient, fig6_recover
+)
 RED = {
     "fig1_measure": "pdf_no_cosine",
     "fig2_strategies": "direct_weights_exchanged",

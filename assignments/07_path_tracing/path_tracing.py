@@ -21,8 +21,20 @@ far you are. The other functions are given and stay as they are. All numbers are
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
+
+# Arrays and their shapes; float64 where nothing else is said.
+PerRow = Annotated[np.ndarray, "N"]
+Vectors = Annotated[np.ndarray, "N 3"]
+Colors = Annotated[np.ndarray, "N 3"]
+PrimitiveColors = Annotated[np.ndarray, "T 3"]
+PerPrimitive = Annotated[np.ndarray, "T"]
+Indices = Annotated[np.ndarray, "N"]  # int64
+Scene = dict[str, np.ndarray]
+Hit = dict[str, np.ndarray]
 
 T_MIN = 1e-6  # meters; nearer intersections do not count
 ALWAYS = 2  # no roulette at the first vertices of a path, counted from the visible one
@@ -210,7 +222,7 @@ def brdf_pdf(scene, hit, wi):
 # Your tasks ---------------------------------------------------------------------------------------
 
 
-def light_pdf(scene, thing, wi, distance):
+def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> PerRow:
     """The density of `sample_light` per solid angle.
 
     Args:
@@ -237,7 +249,7 @@ def light_pdf(scene, thing, wi, distance):
     # <<< solution
 
 
-def mis_weight(pdf, other):
+def mis_weight(pdf: PerRow, other: PerRow) -> PerRow:
     """The weight of a sample in multiple importance sampling of two strategies.
 
     Args:
@@ -254,7 +266,9 @@ def mis_weight(pdf, other):
     # <<< solution
 
 
-def direct_light(scene, hit, u_light, u_surface, proposal=None):
+def direct_light(
+    scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, proposal: Scene | None = None
+) -> Colors:
     """Direct light: radiance from lights that the surface reflects to the viewer.
 
     Args:
@@ -291,7 +305,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
     # <<< solution
 
 
-def roulette(beta, u):
+def roulette(beta: Colors, u: PerRow) -> tuple[Colors, PerRow]:
     """Russian roulette: end paths of small throughput at random, and compensate the others.
 
     Args:
@@ -311,7 +325,9 @@ def roulette(beta, u):
     # <<< solution
 
 
-def trace_paths(scene, origins, directions, depth, rng):
+def trace_paths(
+    scene: Scene, origins: Vectors, directions: Vectors, depth: int, rng: np.random.Generator
+) -> Colors:
     """The radiance along rays, with direct and indirect light.
 
     Args:
@@ -346,7 +362,9 @@ def trace_paths(scene, origins, directions, depth, rng):
     # <<< solution
 
 
-def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
+def direct_light_backward(
+    scene: Scene, hit: Hit, u_light: Vectors, u_surface: Vectors, d_radiance: Colors
+) -> tuple[PrimitiveColors, PerPrimitive]:
     """The adjoint of `direct_light` with respect to the materials (detached sampling).
 
     Directions, densities and weights are held fixed: it is the derivative of

@@ -7,18 +7,15 @@
 # origin, `--voxels` its resolution, and `--views` the number of images to use.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_rendering as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 steps = max(1, int(option("steps", 48)))
 thick = float(option("thick", 1))
@@ -192,41 +189,15 @@ print("ray.png, volume.png: look at them")
 
 
 # %%
-def views(folder):
-    """(origins, directions, colors) of all pixels of the images, scaled down."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    frames = told["frames"]
-    some = max(1, len(frames) // max(1, int(option("views", 8))))
-    for frame in frames[::some]:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        focal = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
-        small = (size, max(1, round(size * tall / wide)))
-        colors = np.asarray(image.convert("RGBA").resize(small), np.float64) / 255
-        colors = colors[..., :3] ** 2.2 * colors[..., 3:]
-        v, u = np.meshgrid(np.arange(small[1]) + 0.5, np.arange(size) + 0.5, indexing="ij")
-        flat = [(u / size - 0.5) / focal, -(v - small[1] / 2) / size / focal, -np.ones(u.shape)]
-        pose = np.array(frame["transform_matrix"], np.float64)
-        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
-        yield np.tile(pose[:3, 3], (len(aim), 1)), aim, colors
-
-
 if capture:
     reach, n = float(option("box", 1.0)), int(option("voxels", 32))
     corner = np.full(3, reach)
     gray = np.full((n, n, n, 4), 0.5)
     gray[..., 3] = 0.1 * thick / reach
     total, count = np.zeros(gray.shape), 0
-    for places, aims, colors in views(Path(capture)):
-        rim = np.concatenate([colors[0], colors[-1], colors[:, 0], colors[:, -1]])
-        given = (-corner, corner, places, aims, steps, rim.mean(axis=0))
-        wrong = mine.render_rays(gray, *given) - colors.reshape(-1, 3)
+    for photo in read_capture(Path(capture), size, option("views", 8)):
+        given = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
+        wrong = mine.render_rays(gray, *given) - photo.colors.reshape(-1, 3)
         total += mine.render_adjoint(gray, *given, 2 * wrong / len(wrong))[0]
         count += 1
     titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")

@@ -4,70 +4,48 @@ from __future__ import annotations
 
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import ADDED, LEFT_OUT, NO_EXP, NO_STEP, OWN_LIGHT, STEPS, TAKES_IN
 from matplotlib.figure import Figure
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GRAY,
-    INK,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_color_map,
-)
+from photograd_course.viz.handout import Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
-
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
-STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
-# The mistakes of figure 4, as its caption names them.
-LEFT_OUT, ADDED, NO_STEP = "no occlusion term", "occlusion term added", "without dt"
-OWN_LIGHT, NO_EXP = "own light in occlusion", "σ dt for opacity"
-TAKES_IN = "T includes the step"
 
 
 def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
     """Extinction, transmittance and weights along a ray through two clouds."""
-    x, sigma, dt = _two_clouds()
-    w, T_end = _weights(module, sigma, dt)
+    x, sigma, dt = parts.two_clouds()
+    w, T_end = parts.weights(module, sigma, dt)
     # Transmittance in front of each step: T_end of the ray that ends there.
-    T = np.array([_T_end(module, sigma[:k], dt[:k]) for k in range(1, STEPS + 1)])
+    T = np.array([parts.end_of(module, sigma[:k], dt[:k]) for k in range(1, STEPS + 1)])
     T = np.concatenate([[1.0], T])
     thin, dense = x < 3, x > 3
     front = dense & (x < 4.5)
     facts: Facts = {
-        "the second cloud is four times as dense": (
-            float(sigma[dense].max() / sigma[thin].max()),
-            3.9,
-            4.1,
+        "the second cloud is four times as dense": Fact(
+            sigma[dense].max() / sigma[thin].max(), 3.9, 4.1, held="what the figure was given"
         ),
-        "T never rises": bool((np.diff(T) <= 0).all()),
-        "T ends at 0.02 or so": (float(T_end), 0.01, 0.03),
-        "weights and T_end sum to 1": (float(w.sum() + T_end), 1 - 1e-12, 1 + 1e-12),
-        "the dense cloud has less weight than the thin one": (
-            float(w[dense].sum() / w[thin].sum()),
-            0.1,
-            0.95,
+        "T never rises": Fact((np.diff(T) <= 0).all(), red="T_end_opacity"),
+        "T ends at 0.02 or so": Fact(T_end, 0.01, 0.03, red="no_step"),
+        "weights and T_end sum to 1": Fact(w.sum() + T_end, 1 - 1e-12, 1 + 1e-12, red="inclusive"),
+        "the dense cloud has less weight than the thin one": Fact(
+            w[dense].sum() / w[thin].sum(), 0.1, 0.95, red="no_occlusion"
         ),
-        "its front has more weight than its back": (
-            float(w[front].sum() / max(w[dense & ~front].sum(), 1e-300)),
-            1.5,
-            1e6,
+        "its front has more weight than its back": Fact(
+            w[front].sum() / max(w[dense & ~front].sum(), 1e-300), 1.5, 1e6, red="back_to_front"
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.4), layout="constrained")
-        panels = figure.subplots(3, 1, sharex=True)
-        panels[0].bar(x, sigma, width=dt, color=GRAY)
-        panels[0].set(ylabel="σ  [1/m]")
-        panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
-        panels[1].set(ylabel="T in front", ylim=(0, 1.05))
-        panels[2].bar(x, w, width=dt, color=BLUE)
-        panels[2].set(ylabel="weight w", xlabel="distance from the camera [m]", xlim=(0, 6))
-        for axes in panels:
-            plain_axes(axes)
-            axes.set_axisbelow(True)
+    figure, panels = subplots(7.0, 4.4, 3, 1, sharex=True)
+    panels[0].bar(x, sigma, width=dt, color=GRAY)
+    panels[0].set(ylabel="σ  [1/m]")
+    panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
+    panels[1].set(ylabel="T in front", ylim=(0, 1.05))
+    panels[2].bar(x, w, width=dt, color=BLUE)
+    panels[2].set(ylabel="weight w", xlabel="distance from the camera [m]", xlim=(0, 6))
+    for axes in panels:
+        plain_axes(axes)
+        axes.set_axisbelow(True)
     return figure, facts
 
 
@@ -75,20 +53,32 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
     """Error of the pixel against the number of steps, for four weights of a step."""
     counts = 2 ** np.arange(3, 10)
     fine = 8192
-    right = _cloud_pixel(lambda s, c, dt: _pixel(module, s, c, dt), fine)
+    right = parts.cloud_pixel(lambda s, c, dt: parts.pixel_of(module, s, c, dt), fine)
     ways = {
-        "T α, equation (7)": (lambda s, c, dt: _pixel(module, s, c, dt), BLUE, "-", "o"),
-        "T σ dt": (lambda s, c, dt: np.sum(_T(s * dt) * s * dt * c), ORANGE, "--", "s"),
+        "T α, equation (7)": (lambda s, c, dt: parts.pixel_of(module, s, c, dt), BLUE, "-", "o"),
+        "T σ dt": (
+            lambda s, c, dt: np.sum(parts.transmittance(s * dt) * s * dt * c),
+            ORANGE,
+            "--",
+            "s",
+        ),
         "T inclusive, times α": (
-            lambda s, c, dt: np.sum(_T(s * dt) * np.exp(-s * dt) * -np.expm1(-s * dt) * c),
+            lambda s, c, dt: np.sum(
+                parts.transmittance(s * dt) * np.exp(-s * dt) * -np.expm1(-s * dt) * c
+            ),
             GRAY,
             "-.",
             "^",
         ),
-        "T σ, without dt": (lambda s, c, dt: np.sum(_T(s * dt) * s * c), CRIMSON, ":", "v"),
+        "T σ, without dt": (
+            lambda s, c, dt: np.sum(parts.transmittance(s * dt) * s * c),
+            CRIMSON,
+            ":",
+            "v",
+        ),
     }
     errors = {
-        name: np.array([abs(_cloud_pixel(way[0], int(n)) - right) / right for n in counts])
+        name: np.array([abs(parts.cloud_pixel(way[0], int(n)) - right) / right for n in counts])
         for name, way in ways.items()
     }
     names = list(ways)
@@ -96,49 +86,41 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
     at_256 = {name: float(e[counts == 256][0]) for name, e in errors.items()}
     shortcuts = min(at_256[names[1]], at_256[names[2]])
     facts: Facts = {
-        "equation (7): a quarter with each halving": (
-            float(np.abs(slopes[names[0]] + 2).max()),
-            0,
-            0.1,
+        "equation (7): a quarter with each halving": Fact(
+            np.abs(slopes[names[0]] + 2).max(), 0, 0.1, red="riemann"
         ),
-        "the shortcuts halve only": (
-            float(max(np.abs(slopes[names[k]] + 1).max() for k in (1, 2))),
-            0,
-            0.1,
+        "the shortcuts halve only": Fact(
+            max(np.abs(slopes[names[k]] + 1).max() for k in (1, 2)), 0, 0.1, red="no_step"
         ),
-        "both errors are thousands of times larger at 256 steps": (
-            shortcuts / max(at_256[names[0]], 1e-300),
-            2000,
-            1e6,
+        "both errors are thousands of times larger at 256 steps": Fact(
+            shortcuts / max(at_256[names[0]], 1e-300), 2000, 1e6, red="inclusive"
         ),
-        "without dt the error doubles": (float(np.abs(slopes[names[3]] - 1).max()), 0, 0.1),
+        "without dt the error doubles": Fact(
+            np.abs(slopes[names[3]] - 1).max(), 0, 0.1, red="lecture"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.1), layout="constrained")
-        axes = figure.subplots()
-        for name, (_, color, dashes, mark) in ways.items():
-            axes.loglog(
-                counts, errors[name], color=color, linestyle=dashes, marker=mark, markersize=4
-            )
-            lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
-            axes.annotate(
-                name,
-                (counts[-1], errors[name][-1]),
-                (7, lift),
-                textcoords="offset points",
-                va="center",
-                color=INK if color == GRAY else color,
-            )
-        axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
-        axes.set_xticks(counts, [str(n) for n in counts])
-        axes.minorticks_off()
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.1)
+    for name, (_, color, dashes, mark) in ways.items():
+        axes.loglog(counts, errors[name], color=color, linestyle=dashes, marker=mark, markersize=4)
+        lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
+        note(
+            axes,
+            name,
+            (counts[-1], errors[name][-1]),
+            (7, lift),
+            va="center",
+            color=INK if color == GRAY else color,
+        )
+    axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
+    axes.set_xticks(counts, [str(n) for n in counts])
+    axes.minorticks_off()
+    plain_axes(axes)
     return figure, facts
 
 
 def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     """Derivative of a pixel with respect to extinction along the ray of figure 1, in two terms."""
-    x, sigma, dt = _two_clouds()
+    x, sigma, dt = parts.two_clouds()
     color = np.where(x < 3, 0.1, 0.95 - 0.12 * (x - 3))
     background = np.array([0.3])
     given = (sigma[None], color[None, :, None], dt[None], background)
@@ -156,43 +138,45 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         )
         own[k] = black[0][0, k]
     hidden = d_sigma - own
-    differences = _differences(module, *given)
+    differences = parts.differences(module, *given)
     dark, bright = (sigma > 0.05) & (x < 3), (sigma > 0.05) & (x > 3)
     error = np.linalg.norm(d_sigma - differences) / np.linalg.norm(differences)
     facts: Facts = {
-        "the sum agrees with finite differences": (float(error), 0, 1e-7),
-        "negative at each step of the dark cloud": (float(d_sigma[dark].max()), -10, -1e-9),
-        "positive at each step of the bright cloud": (float(d_sigma[bright].min()), 1e-9, 10),
-        "the own term is never negative": (float(own.min()), 0, 1),
-        "the occlusion term is never positive": (float(hidden.max()), -10, 0),
-        "weights sum to 1 - T_end": (
-            float(w.sum() + _T_end(module, sigma, dt)),
-            1 - 1e-9,
-            1 + 1e-9,
+        "the sum agrees with finite differences": Fact(error, 0, 1e-7, red="adjoint_off_by_one"),
+        "negative at each step of the dark cloud": Fact(
+            d_sigma[dark].max(), -10, -1e-9, red="adjoint_no_occlusion"
+        ),
+        "positive at each step of the bright cloud": Fact(
+            d_sigma[bright].min(), 1e-9, 10, red="adjoint_only_occlusion"
+        ),
+        "the own term is never negative": Fact(own.min(), 0, 1, red="adjoint_sign"),
+        "the occlusion term is never positive": Fact(
+            hidden.max(), -10, 0, red="adjoint_occlusion_added"
+        ),
+        "weights sum to 1 - T_end": Fact(
+            w.sum() + parts.end_of(module, sigma, dt), 1 - 1e-9, 1 + 1e-9, red="adjoint_color_no_T"
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-        axes = figure.subplots()
-        axes.axvspan(*_reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
-        axes.axvspan(*_reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
-        axes.axhline(0, color=FRAME, linewidth=0.8)
-        axes.plot(x, own, color=BLUE, linestyle="--")
-        axes.plot(x, hidden, color=ORANGE, linestyle="-.")
-        axes.plot(x, d_sigma, color=INK)
-        axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
-        for text, place, color in (
-            ("own term", (4.1, 0.035), BLUE),
-            ("occlusion term", (4.1, -0.038), ORANGE),
-            ("sum; dots: finite differences", (1.3, -0.034), INK),
-        ):
-            axes.annotate(text, place, color=color, fontsize=8)
-        axes.set(ylim=(-0.07, 0.07))
-        low, high = axes.get_ylim()
-        for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
-            axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
-        axes.set(xlabel="distance from the camera [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.0)
+    axes.axvspan(*parts.reach(x, dark, dt), color=INK, alpha=0.12, linewidth=0)
+    axes.axvspan(*parts.reach(x, bright, dt), color=ORANGE, alpha=0.12, linewidth=0)
+    axes.axhline(0, color=FRAME, linewidth=0.8)
+    axes.plot(x, own, color=BLUE, linestyle="--")
+    axes.plot(x, hidden, color=ORANGE, linestyle="-.")
+    axes.plot(x, d_sigma, color=INK)
+    axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
+    for text, place, color in (
+        ("own term", (4.1, 0.035), BLUE),
+        ("occlusion term", (4.1, -0.038), ORANGE),
+        ("sum; dots: finite differences", (1.3, -0.034), INK),
+    ):
+        axes.annotate(text, place, color=color, fontsize=8)
+    axes.set(ylim=(-0.07, 0.07))
+    low, high = axes.get_ylim()
+    for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
+        axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
+    axes.set(xlabel="distance from the camera [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -205,9 +189,9 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     d_pixel = rng.uniform(-1, 1, (rays, 3))
     right = module.composite_adjoint(sigma, color, dt, background, d_pixel, np.zeros(rays))[0]
     few = slice(0, 4)
-    checked = _differences(module, sigma[few], color[few], dt[few], background, d_pixel[few])
+    checked = parts.differences(module, sigma[few], color[few], dt[few], background, d_pixel[few])
     found = {
-        name: _wrong(name, sigma, color, length, background, d_pixel)
+        name: parts.wrong(name, sigma, color, length, background, d_pixel)
         for name in (LEFT_OUT, ADDED, NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     }
     error = {k: float(np.linalg.norm(v - right) / np.linalg.norm(right)) for k, v in found.items()}
@@ -218,28 +202,36 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     subtle = (NO_STEP, OWN_LIGHT, NO_EXP, TAKES_IN)
     worst = np.linalg.norm(right[few] - checked) / np.linalg.norm(checked)
     facts: Facts = {
-        "the right one agrees with finite differences to 1e-7": (float(worst), 0, 1e-7),
-        "the first two point elsewhere": (max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9),
-        "the other four have cosines above 0.99": (min(cosine[k] for k in subtle), 0.99, 1.0001),
-        "and are wrong by more than 10 %": (min(error[k] for k in subtle), 0.1, 20),
-        "without dt the cosine is 1": (cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9),
+        "the right one agrees with finite differences to 1e-7": Fact(
+            worst, 0, 1e-7, red="adjoint_inclusive"
+        ),
+        "the first two point elsewhere": Fact(
+            max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9, red="adjoint_no_occlusion"
+        ),
+        "the other four have cosines above 0.99": Fact(
+            min(cosine[k] for k in subtle), 0.99, 1.0001, red="adjoint_sign"
+        ),
+        "and are wrong by more than 10 %": Fact(
+            min(error[k] for k in subtle), 0.1, 20, red="adjoint_missing_step"
+        ),
+        "without dt the cosine is 1": Fact(
+            cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9, red="adjoint_riemann"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        axes = figure.subplots()
-        names = list(found)
-        values = [100 * error[name] for name in names]
-        axes.barh(names, values, color=[CRIMSON] * 2 + [BLUE] * 4, height=0.62)
-        for row, name in enumerate(names):
-            text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
-            axes.annotate(text, (values[row], row), (5, 0), textcoords="offset points", va="center")
-        axes.set(xscale="log", xlim=(2, 40000), xlabel="relative error [%]")
-        axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
-        axes.set_axisbelow(True)
-        axes.minorticks_off()
-        axes.invert_yaxis()
-        plain_axes(axes)
-        axes.grid(visible=False, axis="y")
+    figure, axes = subplots(7.0, 2.6)
+    names = list(found)
+    values = [100 * error[name] for name in names]
+    axes.barh(names, values, color=[CRIMSON] * 2 + [BLUE] * 4, height=0.62)
+    for row, name in enumerate(names):
+        text = f"{values[row]:.0f} %,  cosine {cosine[name]:.3f}".replace("-", "−")
+        note(axes, text, (values[row], row), (5, 0), va="center")
+    axes.set(xscale="log", xlim=(2, 40000), xlabel="relative error [%]")
+    axes.set_xticks([3, 10, 30, 100, 300, 1000], ["3", "10", "30", "100", "300", "1000"])
+    axes.set_axisbelow(True)
+    axes.minorticks_off()
+    axes.invert_yaxis()
+    plain_axes(axes)
+    axes.grid(visible=False, axis="y")
     return figure, facts
 
 
@@ -255,79 +247,66 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
     ]
     overlap = [(max(p[0][0], p[1][0]), min(p[0][1], p[1][1])) for p in planes]
     facts: Facts = {
-        "the first ray hits where both intervals overlap": bool(
-            np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0]
+        "the first ray hits where both intervals overlap": Fact(
+            np.allclose([near[0], far[0]], overlap[0]) and near[0] < far[0], red="box_first_entry"
         ),
-        "those of the second do not overlap": bool(overlap[1][0] > overlap[1][1]),
-        "it misses": bool(near[1] == 0 and far[1] == 0),
+        "those of the second do not overlap": Fact(
+            overlap[1][0] > overlap[1][1], held="what the figure was given"
+        ),
+        "it misses": Fact(near[1] == 0 and far[1] == 0, red="box_misses_kept"),
     }
     colors = (BLUE, CRIMSON)
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
-        left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
-        left.fill([1, 4, 4, 1], [1, 1, 3, 3], color=FRAME, alpha=0.25, linewidth=0)
-        for x in (1, 4):
-            left.axvline(x, color=FRAME, linewidth=0.8, linestyle=":")
-        for y in (1, 3):
-            left.axhline(y, color=FRAME, linewidth=0.8, linestyle=":")
-        for r in (0, 1):
-            o, d = origins[r, :2], directions[r, :2]
-            line = o + np.array([0.0, 5.2])[:, None] * d
-            left.plot(*line.T, color=colors[r], linewidth=1.0)
-            if far[r] > near[r]:
-                inside = o + np.array([near[r], far[r]])[:, None] * d
-                left.plot(*inside.T, color=colors[r], linewidth=3.5, solid_capstyle="butt")
-            for a, mark in ((0, "o"), (1, "s")):
-                at = o + np.array(planes[r][a])[:, None] * d
-                left.plot(*at.T, mark, color=colors[r], ms=5, mfc="white")
-            name, place = (("first", (4.25, 2.45)), ("second", (1.25, 3.6)))[r]
-            left.annotate(name, place, color=colors[r])
-        left.set(xlim=(0, 5), ylim=(0, 4), xlabel="x", ylabel="y", aspect="equal")
-        left.set(xticks=range(6), yticks=range(5))
-        rows = 0
-        for r in (0, 1):
-            for a, mark in ((0, "o"), (1, "s")):
-                right.plot(
-                    planes[r][a],
-                    [rows, rows],
-                    color=colors[r],
-                    marker=mark,
-                    markerfacecolor="white",
-                    markersize=5,
-                )
-                said = "in the " + "xy"[a] + " slab"
-                right.annotate(
-                    said, (planes[r][a][0], rows), (0, 7), textcoords="offset points", fontsize=7.5
-                )
-                rows += 1
-            if far[r] > near[r]:
-                right.plot(
-                    [near[r], far[r]],
-                    [rows, rows],
-                    color=colors[r],
-                    linewidth=4,
-                    solid_capstyle="butt",
-                )
-            said = "in the box" if far[r] > near[r] else "never in all slabs: misses"
-            start = near[r] if far[r] > near[r] else 0.3
-            right.annotate(
-                said,
-                (start, rows),
-                (0, 6),
-                textcoords="offset points",
-                fontsize=7.5,
+    figure, (left, right) = subplots(7.0, 2.6, 1, 2, width_ratios=(1.1, 1))
+    left.fill([1, 4, 4, 1], [1, 1, 3, 3], color=FRAME, alpha=0.25, linewidth=0)
+    for x in (1, 4):
+        left.axvline(x, color=FRAME, linewidth=0.8, linestyle=":")
+    for y in (1, 3):
+        left.axhline(y, color=FRAME, linewidth=0.8, linestyle=":")
+    for r in (0, 1):
+        o, d = origins[r, :2], directions[r, :2]
+        line = o + np.array([0.0, 5.2])[:, None] * d
+        left.plot(*line.T, color=colors[r], linewidth=1.0)
+        if far[r] > near[r]:
+            inside = o + np.array([near[r], far[r]])[:, None] * d
+            left.plot(*inside.T, color=colors[r], linewidth=3.5, solid_capstyle="butt")
+        for a, mark in ((0, "o"), (1, "s")):
+            at = o + np.array(planes[r][a])[:, None] * d
+            left.plot(*at.T, mark, color=colors[r], ms=5, mfc="white")
+        name, place = (("first", (4.25, 2.45)), ("second", (1.25, 3.6)))[r]
+        left.annotate(name, place, color=colors[r])
+    left.set(xlim=(0, 5), ylim=(0, 4), xlabel="x", ylabel="y", aspect="equal")
+    left.set(xticks=range(6), yticks=range(5))
+    rows = 0
+    for r in (0, 1):
+        for a, mark in ((0, "o"), (1, "s")):
+            right.plot(
+                planes[r][a],
+                [rows, rows],
                 color=colors[r],
+                marker=mark,
+                markerfacecolor="white",
+                markersize=5,
             )
+            said = "in the " + "xy"[a] + " slab"
+            note(right, said, (planes[r][a][0], rows), (0, 7), fontsize=7.5)
             rows += 1
-        right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
-        right.spines[["top", "right", "left"]].set_visible(False)
+        if far[r] > near[r]:
+            right.plot(
+                [near[r], far[r]], [rows, rows], color=colors[r], linewidth=4, solid_capstyle="butt"
+            )
+        said = "in the box" if far[r] > near[r] else "never in all slabs: misses"
+        start = near[r] if far[r] > near[r] else 0.3
+        note(right, said, (start, rows), (0, 6), fontsize=7.5, color=colors[r])
+        rows += 1
+    right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
+    right.spines[["top", "right", "left"]].set_visible(False)
     return figure, facts
 
 
 def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     """A photographed volume, a wrong guess, and the derivative of the loss w.r.t. sigma."""
     shape, low, high = (24, 24, 24), -np.ones(3), np.ones(3)
-    truth, guess, parts = _ball_and_ring(shape)
+    truth, guess, pieces = parts.ball_and_ring(shape)
     pixels = 60
     side = (np.arange(pixels) + 0.5) / pixels * 2 - 1
     y, x = np.meshgrid(-side, side, indexing="ij")
@@ -339,213 +318,50 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
     d_pixel = 2 / len(seen) * (seen - photograph)
     d_grid, _ = module.render_adjoint(guess, *view, d_pixel)
     slope = d_grid[..., 3]
-    ball, ring, other = parts
-    nowhere = ~_grown(ball | ring | other)
+    ball, ring, other = pieces
+    nowhere = ~parts.grown(ball | ring | other)
     lacking, excess = slope[ring], slope[other]
     columns = slope.sum(axis=2).T[::-1]
     facts: Facts = {
-        "over 95 % of the ring's summed |derivative| is negative": (
-            float(-lacking[lacking < 0].sum() / max(np.abs(lacking).sum(), 1e-300)),
+        "over 95 % of the ring's summed |derivative| is negative": Fact(
+            -lacking[lacking < 0].sum() / max(np.abs(lacking).sum(), 1e-300),
             0.95,
             1,
+            red="view_no_sigma",
         ),
-        "over 95 % of the extra ball's summed |derivative| is positive": (
-            float(excess[excess > 0].sum() / max(np.abs(excess).sum(), 1e-300)),
+        "over 95 % of the extra ball's summed |derivative| is positive": Fact(
+            excess[excess > 0].sum() / max(np.abs(excess).sum(), 1e-300),
             0.95,
             1,
+            red="adjoint_only_occlusion",
         ),
-        "far from ball, ring and extra ball it is below a thousandth": (
-            float(np.abs(slope[nowhere]).max() / np.abs(slope).max()),
+        "far from ball, ring and extra ball it is below a thousandth": Fact(
+            np.abs(slope[nowhere]).max() / np.abs(slope).max(),
             0,
             1e-3,
+            red="view_samples_of_one_ray",
         ),
-        "photograph and guess differ": (float(np.abs(seen - photograph).max()), 0.3, 1),
+        "photograph and guess differ": Fact(
+            np.abs(seen - photograph).max(), 0.3, 1, red="no_occlusion"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.35), layout="constrained")
-        panels = figure.subplots(1, 3)
-        for axes, values, title in zip(
-            panels, (photograph, seen), ("photograph", "guess"), strict=False
-        ):
-            picture = np.clip(values, 0, 1).reshape(pixels, pixels, 3) ** (1 / 2.2)
-            axes.imshow(picture, interpolation="nearest")
-            axes.set_title(title)
-        top = float(np.abs(columns).max())
-        image = panels[2].imshow(
-            columns / top, cmap=signed_color_map(), vmin=-1, vmax=1, interpolation="nearest"
-        )
-        panels[2].set_title("∂L/∂σ, summed along z")
-        for axes in panels:
-            axes.set(xticks=[], yticks=[])
-        bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
-        bar.set_ticklabels(["−1\nadd σ", "0", "remove\nσ  1"])
+    figure, panels = subplots(7.0, 2.35, 1, 3)
+    for axes, values, title in zip(
+        panels, (photograph, seen), ("photograph", "guess"), strict=False
+    ):
+        picture = np.clip(values, 0, 1).reshape(pixels, pixels, 3) ** (1 / 2.2)
+        axes.imshow(picture, interpolation="nearest")
+        axes.set_title(title)
+    top = float(np.abs(columns).max())
+    image = panels[2].imshow(
+        columns / top, cmap=signed_color_map(), vmin=-1, vmax=1, interpolation="nearest"
+    )
+    panels[2].set_title("∂L/∂σ, summed along z")
+    for axes in panels:
+        axes.set(xticks=[], yticks=[])
+    bar = figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.75)
+    bar.set_ticklabels(["−1\nadd σ", "0", "remove\nσ  1"])
     return figure, facts
 
 
-def _two_clouds() -> tuple[Array, Array, Array]:
-    """Midpoints, extinctions, lengths of steps: a thin cloud at 1.5 m, a dense one at 4.5 m."""
-    dt = np.full(STEPS, 6.0 / STEPS)
-    x = np.cumsum(dt) - dt / 2
-    bump = [np.clip(1 - ((x - middle) / 1.0) ** 2, 0, None) for middle in (1.5, 4.5)]
-    return x, 0.6 * bump[0] + 2.4 * bump[1], dt
-
-
-def _weights(module: ModuleType, sigma: Array, dt: Array) -> tuple[Array, float]:
-    """Weights of the steps of a ray, with one channel per step; T_end."""
-    steps = len(sigma)
-    pixel, T_end = module.composite(sigma[None], np.eye(steps)[None], dt[None], np.zeros(steps))
-    return pixel[0], float(T_end[0])
-
-
-def _T_end(module: ModuleType, sigma: Array, dt: Array) -> float:
-    color = np.zeros((1, len(sigma), 1))
-    return float(module.composite(sigma[None], color, dt[None], np.zeros(1))[1][0])
-
-
-def _pixel(module: ModuleType, sigma: Array, color: Array, dt: float) -> float:
-    given = (sigma[None], color[None, :, None], np.full((1, len(sigma)), dt), np.zeros(1))
-    return float(module.composite(*given)[0][0, 0])
-
-
-def _T(s: Array) -> Array:
-    """Transmittance in front of steps of the given optical depths."""
-    return np.exp(-np.concatenate([[0.0], np.cumsum(s)[:-1]]))
-
-
-def _cloud_pixel(way: object, n: int) -> float:
-    """The pixel of a smooth cloud of varying color by one way to weight its steps."""
-    x = (np.arange(n) + 0.5) / n
-    sigma = 3 * np.exp(-(((x - 0.4) / 0.3) ** 2))
-    return float(way(sigma, 0.6 + 0.4 * np.sin(4 * x), 1 / n))  # type: ignore[operator]
-
-
-def _differences(
-    module: ModuleType,
-    sigma: Array,
-    color: Array,
-    dt: Array,
-    background: Array,
-    d_pixel: Array | None = None,
-) -> Array:
-    """Central differences of <pixel, d_pixel> per extinction; of one ray without its axis."""
-    d = np.ones((len(sigma), color.shape[2])) if d_pixel is None else d_pixel
-    result = np.zeros(sigma.shape)
-    for k in range(sigma.shape[1]):
-        ends = []
-        for sign in (1, -1):
-            moved = sigma.copy()
-            moved[:, k] += sign * 1e-5
-            ends.append(np.sum(module.composite(moved, color, dt, background)[0] * d, axis=1))
-        result[:, k] = (ends[0] - ends[1]) / 2e-5
-    return result[0] if d_pixel is None else result
-
-
-def _wrong(
-    name: str, sigma: Array, color: Array, dt: float, background: Array, d_pixel: Array
-) -> Array:
-    """d_sigma with one mistake."""
-    s = sigma * dt
-    T = np.exp(-np.concatenate([np.zeros((len(s), 1)), np.cumsum(s, axis=1)], axis=1))
-    front = T[:, 1:] if name == TAKES_IN else T[:, :-1]
-    light = front * -np.expm1(-s) * np.einsum("rsc,rc->rs", color, d_pixel)
-    end = T[:, -1:] * (d_pixel @ background)[:, None]
-    rest = np.concatenate([light, end], axis=1)[:, ::-1].cumsum(axis=1)[:, ::-1]
-    hidden = rest[:, :-1] if name == OWN_LIGHT else rest[:, 1:]
-    slope = T[:, :-1] if name == NO_EXP else T[:, 1:]
-    own = slope * np.einsum("rsc,rc->rs", color, d_pixel)
-    if name == LEFT_OUT:
-        return dt * own
-    if name == ADDED:
-        return dt * (own + hidden)
-    return (own - hidden) * (1.0 if name == NO_STEP else dt)
-
-
-def _ball_and_ring(shape: tuple[int, int, int]) -> tuple[Array, Array, list[Array]]:
-    """(truth, guess, masks): a ball and a ring; the guess has a second ball and no ring."""
-    axes = [(np.arange(n) + 0.5) / n * 2 - 1 for n in shape]
-    x, y, z = np.meshgrid(*axes, indexing="ij")
-    ball = (x + 0.15) ** 2 + (y + 0.1) ** 2 + z**2 < 0.3**2
-    ring = (np.hypot(x + 0.15, y + 0.1) - 0.6) ** 2 + z**2 < 0.13**2
-    other = (x - 0.72) ** 2 + (y - 0.7) ** 2 + z**2 < 0.2**2
-    truth, guess = np.zeros((*shape, 4)), np.zeros((*shape, 4))
-    for volume in (truth, guess):
-        volume[..., :3] = (0.9, 0.75, 0.45)
-        volume[ball, 3] = 8.0
-    truth[ring, 3] = 6.0
-    guess[other, 3] = 6.0
-    return truth, guess, [ball, ring, other]
-
-
-def _grown(mask: Array) -> Array:
-    """The mask and all voxels within two of it, whole columns along z."""
-    flat = mask.any(axis=2)
-    for _ in range(2):
-        wide = np.pad(flat, 1)
-        flat = wide[:-2, 1:-1] | wide[2:, 1:-1] | wide[1:-1, :-2] | wide[1:-1, 2:] | flat
-    return np.repeat(flat[:, :, None], mask.shape[2], axis=2)
-
-
-def _reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:
-    return float(x[mask].min() - dt[0] / 2), float(x[mask].max() + dt[0] / 2)
-
-
-FIGURES = {
-    "fig1_ray": fig1_ray,
-    "fig2_order": fig2_order,
-    "fig3_adjoint": fig3_adjoint,
-    "fig4_wrong": fig4_wrong,
-    "fig5_box": fig5_box,
-    "fig6_view": fig6_view,
-}
-RED = {
-    "fig1_ray": "inclusive",
-    "fig2_order": "riemann",
-    "fig3_adjoint": "adjoint_no_occlusion",
-    "fig4_wrong": "adjoint_inclusive",
-    "fig5_box": "box_first_entry",
-    "fig6_view": "view_no_sigma",
-}
-RED_FACTS = {
-    "fig1_ray": {
-        "T never rises": "T_end_opacity",
-        "T ends at 0.02 or so": "no_step",
-        "weights and T_end sum to 1": "inclusive",
-        "the dense cloud has less weight than the thin one": "no_occlusion",
-        "its front has more weight than its back": "back_to_front",
-    },
-    "fig2_order": {
-        "equation (7): a quarter with each halving": "riemann",
-        "the shortcuts halve only": "no_step",
-        "both errors are thousands of times larger at 256 steps": "inclusive",
-        "without dt the error doubles": "lecture",
-    },
-    "fig3_adjoint": {
-        "the sum agrees with finite differences": "adjoint_off_by_one",
-        "negative at each step of the dark cloud": "adjoint_no_occlusion",
-        "positive at each step of the bright cloud": "adjoint_only_occlusion",
-        "the own term is never negative": "adjoint_sign",
-        "the occlusion term is never positive": "adjoint_occlusion_added",
-        "weights sum to 1 - T_end": "adjoint_color_no_T",
-    },
-    "fig4_wrong": {
-        "the right one agrees with finite differences to 1e-7": "adjoint_inclusive",
-        "the first two point elsewhere": "adjoint_no_occlusion",
-        "the other four have cosines above 0.99": "adjoint_sign",
-        "and are wrong by more than 10 %": "adjoint_missing_step",
-        "without dt the cosine is 1": "adjoint_riemann",
-    },
-    "fig5_box": {
-        "the first ray hits where both intervals overlap": "box_first_entry",
-        "it misses": "box_misses_kept",
-    },
-    "fig6_view": {
-        "over 95 % of the ring's summed |derivative| is negative": "view_no_sigma",
-        "over 95 % of the extra ball's summed |derivative| is positive": "adjoint_only_occlusion",
-        "far from ball, ring and extra ball it is below a thousandth": "view_samples_of_one_ray",
-        "photograph and guess differ": "no_occlusion",
-    },
-}
-HELD = {
-    "fig1_ray": {"the second cloud is four times as dense": "what the figure was given"},
-    "fig5_box": {"those of the second do not overlap": "what the figure was given"},
-}
+FIGURES = figures_of(fig1_ray, fig2_order, fig3_adjoint, fig4_wrong, fig5_box, fig6_view)

@@ -11,10 +11,27 @@ far you are. `ray_samples` and `render_rays` are given, and work once yours do.
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
+# Arrays and their shapes; float64 where nothing else is said.
+Steps = Annotated[np.ndarray, "R S"]
+StepColors = Annotated[np.ndarray, "R S C"]
+PerRay = Annotated[np.ndarray, "R"]
+Pixels = Annotated[np.ndarray, "R C"]
+Color = Annotated[np.ndarray, "C"]
+Vectors = Annotated[np.ndarray, "R 3"]
+Corner = Annotated[np.ndarray, "3"]
+Grid = Annotated[np.ndarray, "X Y Z C"]
+Places = Annotated[np.ndarray, "N 3"]
+Samples = Annotated[np.ndarray, "N C"]
+Shape = tuple[int, int, int]  # (X, Y, Z)
 
-def composite(sigma, color, dt, background):
+
+def composite(
+    sigma: Steps, color: StepColors, dt: Steps, background: Color
+) -> tuple[Pixels, PerRay]:
     """Emission and absorption along rays, in steps of constant extinction and color.
 
     Args:
@@ -37,7 +54,9 @@ def composite(sigma, color, dt, background):
     # <<< solution
 
 
-def composite_adjoint(sigma, color, dt, background, d_pixel, d_T_end):
+def composite_adjoint(
+    sigma: Steps, color: StepColors, dt: Steps, background: Color, d_pixel: Pixels, d_T_end: PerRay
+) -> tuple[Steps, StepColors, Color]:
     """The adjoint (backward pass) of `composite`.
 
     Args:
@@ -66,7 +85,9 @@ def composite_adjoint(sigma, color, dt, background, d_pixel, d_T_end):
     # <<< solution
 
 
-def ray_box(low, high, origins, directions):
+def ray_box(
+    low: Corner, high: Corner, origins: Vectors, directions: Vectors
+) -> tuple[PerRay, PerRay]:
     """Entry and exit of rays through an axis-aligned box.
 
     Args:
@@ -93,7 +114,7 @@ def ray_box(low, high, origins, directions):
     # <<< solution
 
 
-def trilinear(grid, u):
+def trilinear(grid: Grid, u: Places) -> Samples:
     """Trilinear interpolation of a grid.
 
     Args:
@@ -118,7 +139,7 @@ def trilinear(grid, u):
     # <<< solution
 
 
-def trilinear_adjoint(shape, u, g):
+def trilinear_adjoint(shape: Shape, u: Places, g: Samples) -> Grid:
     """The adjoint of `trilinear`: scatters the derivative of each sample to its eight voxels.
 
     Args:
@@ -166,7 +187,16 @@ def render_rays(grid, low, high, origins, directions, n, background):
     return composite(samples[:, :, 3], samples[:, :, :3], dt, background)[0]
 
 
-def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):
+def render_adjoint(
+    grid: Grid,
+    low: Corner,
+    high: Corner,
+    origins: Vectors,
+    directions: Vectors,
+    n: int,
+    background: Color,
+    d_pixel: Pixels,
+) -> tuple[Grid, Color]:
     """The adjoint of `render_rays` with respect to the volume and the background.
 
     Args:

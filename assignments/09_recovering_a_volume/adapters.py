@@ -4,8 +4,6 @@ Runs beside your file; do not change or submit it. Your renderer is asked throug
 `volume_recovery`, where the grader may put its own instead of a wrong one.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import volume_recovery as yours
 

@@ -7,18 +7,15 @@
 # extent of the box from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_recovery as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, look_at_origin, read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
 steps, capture = option("steps", 60), option("capture", "")
@@ -48,25 +45,13 @@ def scene(n):
     return grid
 
 
-def camera(place):
-    """The pose of a camera that looks at the origin; y is down."""
-    z = -place / np.linalg.norm(place)
-    right = np.cross(z, [0.0, 1.0, 0.0])
-    right /= np.linalg.norm(right)
-    matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = np.stack([right, np.cross(z, right), z], axis=1), place
-    return matrix
-
-
 def photographs(grid, number, size, turn=0.0):
     """Views of a volume by your own renderer."""
-    height = 1 - (np.arange(number) + 0.5) * 2 / number
-    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
-    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    places = 3.2 * all_around(number, turn, up=1)
     views = {
         "pictures": np.zeros((number, size, size, 3)),
         "focal": 1.25 * size,
-        "world_from_camera": np.stack([camera(place) for place in places]),
+        "world_from_camera": np.stack([look_at_origin(place) for place in places]),
         "low": np.full(3, -1.0),
         "high": np.full(3, 1.0),
         "background": np.array([0.04, 0.05, 0.08]),
@@ -258,36 +243,16 @@ print("recovery.png: a held-out view, your derivative, the recovered volume")
 
 # %%
 def taken(folder, size):
-    """Views of a capture, its images scaled down."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    frames = told["frames"]
-    frames = frames[:: max(1, len(frames) // max(2, count))]
-    pictures, poses = [], []
-    for frame in frames:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        given = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = given / told.get("w", wide) if given else 0.5 / np.tan(angle / 2)
-        small = image.convert("RGBA").resize((size, max(1, round(size * tall / wide))))
-        values = np.asarray(small, np.float64) / 255
-        pictures.append(values[..., :3] ** 2.2 * values[..., 3:])
-        # From y up and -z forward to y down and z forward.
-        poses.append(np.array(frame["transform_matrix"], np.float64) @ np.diag([1.0, -1, -1, 1]))
-    pictures = np.stack(pictures)
-    rims = [pictures[:, 0], pictures[:, -1], pictures[:, :, 0], pictures[:, :, -1]]
+    """Views of a capture, its pictures made small."""
+    photos = list(read_capture(folder, size, max(2, count)))
     reach = np.full(3, option("box", 1.0))
     return {
-        "pictures": pictures,
-        "world_from_camera": np.stack(poses),
-        "focal": focal * size,
+        "pictures": np.stack([photo.colors for photo in photos]),
+        "world_from_camera": np.stack([photo.world_from_camera for photo in photos]),
+        "focal": photos[0].focal,
         "low": -reach,
         "high": reach,
-        "background": np.concatenate([rim.reshape(-1, 3) for rim in rims]).mean(axis=0),
+        "background": np.concatenate([photo.border for photo in photos]).mean(axis=0),
     }
 
 

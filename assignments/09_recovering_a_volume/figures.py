@@ -8,18 +8,10 @@ from types import ModuleType
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from photograd_course.viz.style import (
-    BLUE,
-    GRAY,
-    INK,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_color_map,
-)
+from photograd_course.captures import all_around, look_at_origin
+from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
 Views = dict[str, Array | float]
 BACKGROUND = np.array([0.04, 0.05, 0.08])
 LOW, HIGH = np.full(3, -1.0), np.full(3, 1.0)
@@ -29,7 +21,7 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
     """Cameras around the box from above, and the rays of one row of pixels."""
     size, turn = 7, np.arange(6) * np.pi / 3 + 0.3
     places = 3.8 * np.stack([np.cos(turn), 0 * turn, np.sin(turn)], axis=1)
-    views = _views(np.zeros((6, size, size, 3)), np.stack([_looking(p) for p in places]))
+    views = _views(np.zeros((6, size, size, 3)), np.stack([look_at_origin(p) for p in places]))
     row = 3 * size + np.arange(size)
     origins, directions, _ = module.ray_batch(views, row)
     middle = module.ray_batch(views, 3 * size + 3 + np.arange(6) * size**2)
@@ -40,37 +32,31 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
     corners = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
     edges = np.array([_columns(views, k, corners) for k in range(6)])
     facts: Facts = {
-        "central rays go through the origin": (float(miss.max()), 0, 1e-9),
-        "dots lie at the centers of their pixels": (
-            float(np.abs(columns - np.arange(size) - 0.5).max()),
-            0,
-            1e-9,
+        "central rays go through the origin": Fact(miss.max(), 0, 1e-9),
+        "dots lie at the centers of their pixels": Fact(
+            np.abs(columns - np.arange(size) - 0.5).max(), 0, 1e-9
         ),
-        "corners lie between the first and the last column": (
-            float(np.abs(edges - size / 2).max()),
-            0,
-            size / 2,
+        "corners lie between the first and the last column": Fact(
+            np.abs(edges - size / 2).max(), 0, size / 2
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-        axes = figure.subplots()
-        axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GRAY, alpha=0.25, linewidth=0)
-        for ray in range(size):
-            ends = origins[ray] + np.array([0, 6.0])[:, None] * directions[ray]
-            axes.plot(ends[:, 0], ends[:, 2], color=BLUE, linewidth=0.8)
-        axes.plot(dots[..., 0].ravel(), dots[..., 2].ravel(), "o", color=BLUE, markersize=3)
-        for k, place in enumerate(places):
-            side = _looking(place)[:3, 0]
-            wing = place * 0.87 + np.array([-0.34, 0.34])[:, None] * side
-            outline = np.stack([place, wing[0], wing[1], place])
-            axes.plot(outline[:, 0], outline[:, 2], color=ORANGE if k == 0 else INK, linewidth=1.2)
-        axes.annotate("box", (-0.92, 0.68), fontsize=8)
-        # x to the right and y towards the reader: a right-handed z goes down.
-        axes.set(xlim=(-5.6, 5.6), ylim=(4.1, -4.1), xlabel="x [m]", ylabel="z [m]", aspect="equal")
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 3.6)
+    axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GRAY, alpha=0.25, linewidth=0)
+    for ray in range(size):
+        ends = origins[ray] + np.array([0, 6.0])[:, None] * directions[ray]
+        axes.plot(ends[:, 0], ends[:, 2], color=BLUE, linewidth=0.8)
+    axes.plot(dots[..., 0].ravel(), dots[..., 2].ravel(), "o", color=BLUE, markersize=3)
+    for k, place in enumerate(places):
+        side = look_at_origin(place)[:3, 0]
+        wing = place * 0.87 + np.array([-0.34, 0.34])[:, None] * side
+        outline = np.stack([place, wing[0], wing[1], place])
+        axes.plot(outline[:, 0], outline[:, 2], color=ORANGE if k == 0 else INK, linewidth=1.2)
+    axes.annotate("box", (-0.92, 0.68), fontsize=8)
+    # x to the right and y towards the reader: a right-handed z goes down.
+    axes.set(xlim=(-5.6, 5.6), ylim=(4.1, -4.1), xlabel="x [m]", ylabel="z [m]", aspect="equal")
+    plain_axes(axes)
     drawn = axes.yaxis_inverted() and not axes.xaxis_inverted()
-    facts["it is the view from above, not from below"] = bool(drawn)
+    facts["it is the view from above, not from below"] = Fact(drawn)
     return figure, facts
 
 
@@ -83,38 +69,36 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
     inside, outside, other, _ = _kinds(module, scene, views)
     where = n // 2
     facts: Facts = {
-        "inside over 95 % are negative": (_share(signs, inside, -1), 0.95, 1),
-        "where only background is visible over 95 % are positive": (
-            _share(signs, outside, 1),
-            0.95,
-            1,
+        "inside over 95 % are negative": Fact(_share(signs, inside, -1), 0.95, 1),
+        "where only background is visible over 95 % are positive": Fact(
+            _share(signs, outside, 1), 0.95, 1
         ),
-        "of the other empty voxels far from all are positive": (_share(signs, other, 1), 0.4, 0.8),
+        "of the other empty voxels far from all are positive": Fact(
+            _share(signs, other, 1), 0.4, 0.8
+        ),
     }
     root = np.sign(slope) * np.sqrt(np.abs(slope) / np.abs(slope).max())
     pictures = np.asarray(views["pictures"])
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        panels = figure.subplots(1, 4)
-        _show(panels[0], pictures[2], "one of six photographs")
-        panels[1].imshow(scene[:, :, where, 3].T, cmap="gray_r", origin="lower")
-        panels[1].set_title("true density, slice")
-        for axes, values, title in (
-            (panels[2], root, "∂L/∂σ from fog (roots)"),
-            (panels[3], signs, "sign map"),
-        ):
-            axes.imshow(
-                values[:, :, where].T,
-                cmap=signed_color_map(),
-                vmin=-1,
-                vmax=1,
-                origin="lower",
-                interpolation="nearest",
-            )
-            axes.contour(scene[:, :, where, 3].T, levels=[5], colors=INK, linewidths=0.8)
-            axes.set_title(title)
-        for axes in panels:
-            axes.set(xticks=[], yticks=[])
+    figure, panels = subplots(7.0, 2.1, 1, 4)
+    _show(panels[0], pictures[2], "one of six photographs")
+    panels[1].imshow(scene[:, :, where, 3].T, cmap="gray_r", origin="lower")
+    panels[1].set_title("true density, slice")
+    for axes, values, title in (
+        (panels[2], root, "∂L/∂σ from fog (roots)"),
+        (panels[3], signs, "sign map"),
+    ):
+        axes.imshow(
+            values[:, :, where].T,
+            cmap=signed_color_map(),
+            vmin=-1,
+            vmax=1,
+            origin="lower",
+            interpolation="nearest",
+        )
+        axes.contour(scene[:, :, where, 3].T, levels=[5], colors=INK, linewidths=0.8)
+        axes.set_title(title)
+    for axes in panels:
+        axes.set(xticks=[], yticks=[])
     return figure, facts
 
 
@@ -132,27 +116,25 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
         shares.append([_share(signs, empty & (blamed == k), 1) for k in range(7)])
     start, after = shares
     facts: Facts = {
-        "none: all are positive": (start[0], 0.999, 1),
-        "all six: few are": (start[6], 0, 0.25),
-        "the fraction falls from none to six": bool(start[0] > start[3] > start[6]),
-        "after twelve steps far more are positive from two on": bool(
+        "none: all are positive": Fact(start[0], 0.999, 1),
+        "all six: few are": Fact(start[6], 0, 0.25),
+        "the fraction falls from none to six": Fact(start[0] > start[3] > start[6]),
+        "after twelve steps far more are positive from two on": Fact(
             all(after[k] > start[k] + 0.25 for k in range(2, 7))
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        axes = figure.subplots()
-        axes.bar(range(7), [100 * s for s in start], color=BLUE, width=0.6, label="from fog")
-        axes.plot(range(7), [100 * s for s in after], "o", color=ORANGE, label="after twelve steps")
-        axes.set(
-            xlabel="photographs that see a ball along a ray through the voxel",
-            ylabel="positive [%]",
-            ylim=(0, 125),
-            xticks=range(7),
-        )
-        axes.legend(loc="upper right", ncols=2)
-        axes.set_axisbelow(True)
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.7)
+    axes.bar(range(7), [100 * s for s in start], color=BLUE, width=0.6, label="from fog")
+    axes.plot(range(7), [100 * s for s in after], "o", color=ORANGE, label="after twelve steps")
+    axes.set(
+        xlabel="photographs that see a ball along a ray through the voxel",
+        ylabel="positive [%]",
+        ylim=(0, 125),
+        xticks=range(7),
+    )
+    axes.legend(loc="upper right", ncols=2)
+    axes.set_axisbelow(True)
+    plain_axes(axes)
     return figure, facts
 
 
@@ -167,44 +149,29 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     bad = [_score(module, grid, unseen) for grid in wrong]
     at = marks.index(8)
     facts: Facts = {
-        "the right one passes 30 dB on held-out views": (new[-1], 30, 60),
-        "after eight steps both are less than 1 dB apart": (abs(new[at] - bad[at]), 0, 1),
-        "the wrong one still has more than 20 dB": (bad[-1], 20, 40),
-        "and is worse than the right one in the end": (new[-1] - bad[-1], 1.5, 40),
-        "photographs are matched better than held-out views": bool(own[-1] > new[-1]),
+        "the right one passes 30 dB on held-out views": Fact(new[-1], 30, 60),
+        "after eight steps both are less than 1 dB apart": Fact(abs(new[at] - bad[at]), 0, 1),
+        "the wrong one still has more than 20 dB": Fact(bad[-1], 20, 40),
+        "and is worse than the right one in the end": Fact(new[-1] - bad[-1], 1.5, 40),
+        "photographs are matched better than held-out views": Fact(own[-1] > new[-1]),
     }
     large = _large(module, scene, unseen)
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.6), layout="constrained")
-        grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.25))
-        shown = [("truth", np.asarray(large["pictures"])[0])]
-        for steps in (1, 8, 50):
-            found = _rendered(module, right[marks.index(steps)], large).reshape(40, 40, 3)
-            shown.append((f"after {steps} step{'s' * (steps > 1)}", found))
-        for k, (title, picture) in enumerate(shown):
-            _show(figure.add_subplot(grid[0, k]), picture, title)
-        axes = figure.add_subplot(grid[1, :])
-        axes.plot(marks, own, "o--", color=BLUE, markersize=4)
-        axes.plot(marks, new, "o-", color=BLUE, markersize=4)
-        axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
-        axes.annotate(
-            "right adjoint",
-            (marks[-1], new[-1]),
-            (-4, -16),
-            textcoords="offset points",
-            color=BLUE,
-            ha="right",
-        )
-        axes.annotate(
-            "no occlusion term",
-            (marks[-1], bad[-1]),
-            (-4, -24),
-            textcoords="offset points",
-            color=ORANGE,
-            ha="right",
-        )
-        axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
-        plain_axes(axes)
+    figure = Figure(figsize=(7.0, 4.6), layout="constrained")
+    grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.25))
+    shown = [("truth", np.asarray(large["pictures"])[0])]
+    for steps in (1, 8, 50):
+        found = _rendered(module, right[marks.index(steps)], large).reshape(40, 40, 3)
+        shown.append((f"after {steps} step{'s' * (steps > 1)}", found))
+    for k, (title, picture) in enumerate(shown):
+        _show(figure.add_subplot(grid[0, k]), picture, title)
+    axes = figure.add_subplot(grid[1, :])
+    axes.plot(marks, own, "o--", color=BLUE, markersize=4)
+    axes.plot(marks, new, "o-", color=BLUE, markersize=4)
+    axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
+    note(axes, "right adjoint", (marks[-1], new[-1]), (-4, -16), color=BLUE, ha="right")
+    note(axes, "no occlusion term", (marks[-1], bad[-1]), (-4, -24), color=ORANGE, ha="right")
+    axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
+    plain_axes(axes)
     return figure, facts
 
 
@@ -221,38 +188,18 @@ def fig5_tv(module: ModuleType) -> tuple[Figure, Facts]:
     module.TV = kept
     scores = [_score(module, grid, unseen) for grid in found]
     facts: Facts = {
-        "0.01 gains more than 1 dB over none": (scores[1] - scores[0], 1, 20),
-        "a hundred times as much is worse than none": (scores[2] - scores[0], -30, -0.5),
+        "0.01 gains more than 1 dB over none": Fact(scores[1] - scores[0], 1, 20),
+        "a hundred times as much is worse than none": Fact(scores[2] - scores[0], -30, -0.5),
     }
     large = _large(module, scene, unseen)
     shown = [("truth", np.asarray(large["pictures"])[0])]
     for k in (0, 1, 2):
         picture = _rendered(module, found[k], large).reshape(40, 40, 3)
         shown.append((f"TV = {weights[k]:g}: {scores[k]:.1f} dB", picture))
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.1), layout="constrained")
-        for axes, (title, picture) in zip(figure.subplots(1, 4), shown, strict=True):
-            _show(axes, picture, title)
+    figure = Figure(figsize=(7.0, 2.1), layout="constrained")
+    for axes, (title, picture) in zip(figure.subplots(1, 4), shown, strict=True):
+        _show(axes, picture, title)
     return figure, facts
-
-
-def _looking(place: Array) -> Array:
-    """The pose of a camera that looks at the origin, y down."""
-    forward = -place / np.linalg.norm(place)
-    side = np.cross(forward, [0.0, 1.0, 0.0])
-    side /= np.linalg.norm(side)
-    pose = np.eye(4)
-    pose[:3, :3] = np.stack([side, np.cross(forward, side), forward], axis=1)
-    pose[:3, 3] = place
-    return pose
-
-
-def _around(count: int, turn: float) -> Array:
-    height = 1 - (np.arange(count) + 0.5) * 2 / count
-    phi = np.arange(count) * 2.399963 + turn
-    ring = np.sqrt(1 - height**2)
-    places = np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
-    return np.stack([_looking(3.2 * place) for place in places])
 
 
 def _views(pictures: Array, poses: Array) -> Views:
@@ -300,7 +247,10 @@ def _rendered(module: ModuleType, grid: Array, views: Views) -> Array:
 def _photographs(
     module: ModuleType, grid: Array, count: int, size: int, turn: float = 0.0
 ) -> Views:
-    views = _views(np.zeros((count, size, size, 3)), _around(count, turn))
+    views = _views(
+        np.zeros((count, size, size, 3)),
+        np.stack([look_at_origin(3.2 * p) for p in all_around(count, turn, up=1)]),
+    )
     views["pictures"] = _rendered(module, grid, views).reshape(count, size, size, 3)
     return views
 
@@ -419,13 +369,7 @@ def _show(axes: Axes, picture: Array, title: str) -> None:
     axes.set_title(title)
 
 
-FIGURES = {
-    "fig1_cameras": fig1_cameras,
-    "fig2_signs": fig2_signs,
-    "fig3_why": fig3_why,
-    "fig4_fit": fig4_fit,
-    "fig5_tv": fig5_tv,
-}
+FIGURES = figures_of(fig1_cameras, fig2_signs, fig3_why, fig4_fit, fig5_tv)
 RED = {
     "fig1_cameras": "rays_corner",
     "fig2_signs": "map_upside_down",

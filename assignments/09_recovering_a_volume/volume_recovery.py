@@ -16,8 +16,20 @@ far you are. `volume_rendering.py`, beside this file, must be yours of assignmen
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from volume_rendering import render_adjoint, render_rays
+
+# Arrays and their shapes; float64 where nothing else is said.
+Grid = Annotated[np.ndarray, "X Y Z 4"]
+SignMap = Annotated[np.ndarray, "X Y Z"]
+Vectors = Annotated[np.ndarray, "R 3"]
+Colors = Annotated[np.ndarray, "R 3"]
+Indices = Annotated[np.ndarray, "R"]  # int64
+Losses = Annotated[np.ndarray, "steps"]
+Picture = Annotated[np.ndarray, "..."]  # colors of any shape
+Views = dict[str, np.ndarray]
 
 SAMPLES = 16  # per ray
 RAYS = 192  # in the batch of each step of a fit
@@ -27,7 +39,7 @@ FLOOR = 1e-6  # fraction of the largest derivative, below which the sign is 0
 RATES = np.array([0.05, 0.05, 0.05, 0.5])  # of Adam, for r, g, b and sigma
 
 
-def psnr(picture, truth):
+def psnr(picture: Picture, truth: Picture) -> float:
     """Peak signal-to-noise ratio of two images, in decibels: higher is better.
 
     Args:
@@ -41,7 +53,7 @@ def psnr(picture, truth):
     # <<< solution
 
 
-def ray_batch(views, chosen):
+def ray_batch(views: Views, chosen: Indices) -> tuple[Vectors, Vectors, Colors]:
     """Rays through the centers of some pixels, and the colors of these pixels.
 
     Args:
@@ -63,7 +75,7 @@ def ray_batch(views, chosen):
     # <<< solution
 
 
-def mse_and_cotangent(pixels, truth):
+def mse_and_cotangent(pixels: Colors, truth: Colors) -> tuple[float, Colors]:
     """The loss of a batch of rays, and its derivative with respect to each pixel.
 
     Args:
@@ -90,7 +102,7 @@ def _ahead(grid, axis):
 # <<< solution
 
 
-def tv_loss_adjoint(grid, eps):
+def tv_loss_adjoint(grid: Grid, eps: float) -> tuple[float, Grid]:
     """The total variation of a volume, and its derivative with respect to each number.
 
     Args:
@@ -142,7 +154,7 @@ def draw(views, rng):
     return rng.choice(total, min(RAYS, total), replace=False)
 
 
-def gradient_sign_map(grid, views):
+def gradient_sign_map(grid: Grid, views: Views) -> SignMap:
     """The sign of the derivative with respect to each extinction, from all photographs.
 
     Args:
@@ -165,7 +177,9 @@ def gradient_sign_map(grid, views):
     # <<< solution
 
 
-def fit_volume(views, grid, steps, rng):
+def fit_volume(
+    views: Views, grid: Grid, steps: int, rng: np.random.Generator
+) -> tuple[Grid, Losses]:
     """Recover a volume from photographs.
 
     Args:

@@ -8,10 +8,7 @@
 # with `transforms.json` and its images, of a scene that extends `--box` from the origin.
 
 # %%
-from __future__ import annotations
-
 import importlib
-import json
 import tempfile
 import time
 from pathlib import Path
@@ -19,8 +16,8 @@ from pathlib import Path
 import numpy as np
 import sparse_grids as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, rays_to_origin, read_capture
 from photograd_course.explore import option
-from PIL import Image
 
 n, rounds, steps = option("voxels", 16), option("rounds", 8), option("steps", 5)
 threshold, views, size = option("threshold", 0.05), option("views", 16), option("size", 10)
@@ -52,19 +49,7 @@ def scene(n):
 
 def cameras(count, size, turned=0.0):
     """Rays (2, count size^2, 3) of cameras all around the scene."""
-    height = 1 - (np.arange(count) + 0.5) * 2 / count
-    phi = np.arange(count) * 2.399963 + turned
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.38
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(3.2 * place, (size**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays_to_origin(3.2 * all_around(count, turned), size, 0.38)
 
 
 def table_of(voxels):
@@ -308,31 +293,14 @@ print("sparse.png: look at it")
 
 # %%
 def photographs(folder, reach):
-    """Rays (2, R, 3), scaled so that the scene fills the cube, colors (R, 3), image sizes."""
-    file = folder / "transforms.json"
-    file = file if file.exists() else folder / "transforms_train.json"
-    told = json.loads(file.read_text(encoding="utf-8"))
-    origins, directions, colors, sizes = [], [], [], []
-    for frame in told["frames"][:: max(1, len(told["frames"]) // max(1, views))]:
-        file = folder / frame["file_path"]
-        file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file, formats=("PNG", "JPEG"))
-        wide, tall = image.size
-        focal = frame.get("fl_x", told.get("fl_x"))
-        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
-        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
-        a, b = 2 * size, max(1, round(2 * size * tall / wide))
-        light = np.asarray(image.convert("RGBA").resize((a, b)), np.float64) / 255
-        colors.append((light[..., :3] ** 2.2 * light[..., 3:]).reshape(-1, 3))
-        v, u = np.meshgrid(np.arange(b) + 0.5, np.arange(a) + 0.5, indexing="ij")
-        flat = [(u / a - 0.5) / focal, -(v - b / 2) / a / focal, -np.ones(u.shape)]
-        pose = np.array(frame["transform_matrix"], np.float64)
-        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
-        directions.append(aim / np.linalg.norm(aim, axis=1, keepdims=True))
-        origins.append(np.tile(pose[:3, 3] / reach, (len(aim), 1)))
-        sizes.append((b, a))
-    rays = np.stack([np.concatenate(origins), np.concatenate(directions)])
-    return rays, np.concatenate(colors), sizes
+    """Rays (2, R, 3), scaled so that the scene fills the cube, colors (R, 3), picture sizes."""
+    photos = list(read_capture(folder, 2 * size, views))
+    origins, directions = (
+        np.concatenate(each) for each in zip(*(p.rays() for p in photos), strict=True)
+    )
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    colors = np.concatenate([photo.colors.reshape(-1, 3) for photo in photos])
+    return np.stack([origins / reach, directions]), colors, [p.colors.shape[:2] for p in photos]
 
 
 if capture:

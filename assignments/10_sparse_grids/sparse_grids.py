@@ -14,14 +14,33 @@ far you are. The other functions are given and stay as they are. Values are floa
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Cube = Annotated[np.ndarray, "n n n"]  # bool
+Tree = Annotated[np.ndarray, "N"]  # int64
+Vectors = Annotated[np.ndarray, "R 3"]
+Voxels = Annotated[np.ndarray, "V 3"]  # int64
+Values = Annotated[np.ndarray, "V C"]
+Table = Annotated[np.ndarray, "slots 4"]  # int64
+Rows = Annotated[np.ndarray, "M"]  # int64
+Corners = Annotated[np.ndarray, "8 M"]  # int64 rows, or weights
+Samples = Annotated[np.ndarray, "M C"]
+Colors = Annotated[np.ndarray, "R 3"]
+Wanted = Annotated[np.ndarray, "R count"]  # bool
+Losses = Annotated[np.ndarray, "rounds*steps"]
+Rays = Annotated[np.ndarray, "2 R 3"]  # origins, directions
+Leaf = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 EMPTY, FULL = 0, -1  # leaves of an octree
 START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: gray, with little extinction
 RATES = np.array([0.05, 0.05, 0.05, 0.4])  # of Adam, by channel
 
 
-def octree_from_dense(full):
+def octree_from_dense(full: Cube) -> Tree:
     """The octree of a cube of cells that are full or empty.
 
     Args:
@@ -74,7 +93,7 @@ def octree_leaf(tree, n, places):
     return tree[node] == FULL, low, side
 
 
-def skip_empty(leaf, first, stride, count):
+def skip_empty(leaf: Leaf, first: Vectors, stride: Vectors, count: int) -> Wanted:
     """Empty-space skipping: which samples of rays lie in full leaves.
 
     Args:
@@ -144,7 +163,7 @@ def voxel_hash_find(table, voxels):
     return rows
 
 
-def voxel_hash_insert(table, voxels, rows):
+def voxel_hash_insert(table: Table, voxels: Voxels, rows: Rows) -> Table:
     """Insert voxels into a hash table, so that `voxel_hash_find` finds their rows.
 
     Args:
@@ -198,7 +217,7 @@ def sample_sparse(values, row, weight):
     return np.einsum("em,emc->mc", weight, padded[row])
 
 
-def sample_sparse_adjoint(count, row, weight, g):
+def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples) -> Values:
     """The adjoint of `sample_sparse`: scatters the derivative of each sample to its voxels.
 
     Args:
@@ -219,7 +238,9 @@ def sample_sparse_adjoint(count, row, weight, g):
     # <<< solution
 
 
-def prune_and_dilate(n, voxels, row, share, threshold, steps):
+def prune_and_dilate(
+    n: int, voxels: Voxels, row: Corners, share: Corners, threshold: float, steps: int
+) -> Voxels:
     """Prune voxels of small contribution, and dilate the remaining set.
 
     Args:
@@ -356,7 +377,17 @@ class Adam:
         return x - RATES * m / (np.sqrt(v) + 1e-10)
 
 
-def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
+def fit_sparse(
+    n: int,
+    voxels: Voxels,
+    values: Values,
+    rays: Rays,
+    target: Colors,
+    rounds: int,
+    steps: int,
+    threshold: float,
+    grow: int,
+) -> tuple[Voxels, Values, Losses]:
     """Recover a sparse grid: its values and the set of its active voxels.
 
     Args:

@@ -4,8 +4,6 @@ Runs beside your file; do not change or submit it. Arrays reach your functions a
 copies. A second call shows whether one was changed.
 """
 
-from __future__ import annotations
-
 import plenoxels
 
 

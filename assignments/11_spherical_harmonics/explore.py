@@ -7,14 +7,13 @@
 # the coarsest level.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 
 import numpy as np
 import plenoxels as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.explore import option
 
 views, pixels, degree = option("views", 30), option("pixels", 12), option("degree", 2)
@@ -53,19 +52,7 @@ def shiny_balls(n):
 
 def photographs(count, size, turned=0.0):
     """Rays (2, count size^2, 3) of cameras all around the scene."""
-    height = 1 - (np.arange(count) + 0.5) * 2 / count
-    phi = np.arange(count) * 2.399963 + turned
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.39
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(3.2 * place, (size**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays_to_origin(3.2 * all_around(count, turned), size, 0.39)
 
 
 def seen(volume, rays):

@@ -3,150 +3,149 @@
 `module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
 """
 
-from __future__ import annotations
-
+import figure_parts as parts
 import numpy as np
+from figure_parts import LIGHT
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
+from photograd_course.viz.handout import Fact, figures_of, note, subplots
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 
 def fig1_harmonics(module):
     """Harmonics to degree 3 on balls."""
-    d, inside = _ball(44)
+    d, inside = parts.ball(44)
     Y = module.sh_basis(d, 3)
     east, pole = module.sh_basis(np.array([[1.0, 0, 0], [0, 0, 1.0]]), 3)
     around, weights = module.quadrature(6)
     there, back = module.sh_basis(around, 3), module.sh_basis(-around, 3)
     odd = np.repeat([1, -1, 1, -1], [1, 3, 5, 7])
     facts = {
-        "degree 0 is the same everywhere": (float(np.ptp(Y[:, 0])), 0, 1e-12),
-        "l = 1, m = 1 is negative toward +x": (float(east[3]), -1, -0.4),
-        "l = 1, m = 0 is positive toward +z": (float(pole[2]), 0.4, 1),
-        "odd degrees change sign at the opposite point, even ones do not": (
-            float(np.abs(back - there * odd).max()),
-            0,
-            1e-12,
+        "degree 0 is the same everywhere": Fact(
+            np.ptp(Y[:, 0]), 0, 1e-12, held="no known mistake makes it vary"
         ),
-        "all but the first have mean zero": (float(np.abs(weights @ there)[1:].max()), 0, 1e-12),
+        "l = 1, m = 1 is negative toward +x": Fact(east[3], -1, -0.4, red="no_phase"),
+        "l = 1, m = 0 is positive toward +z": Fact(pole[2], 0.4, 1, red="pole_along_y"),
+        "odd degrees change sign at the opposite point, even ones do not": Fact(
+            np.abs(back - there * odd).max(), 0, 1e-12, red="angle_once"
+        ),
+        "all but the first have mean zero": Fact(
+            np.abs(weights @ there)[1:].max(), 0, 1e-12, red="recurrence_sign"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.1))
-        top = float(np.abs(Y).max())
-        for ell in range(4):
-            for m in range(-ell, ell + 1):
-                axes = figure.add_axes((0.075 + (m + 3) * 0.128, 0.745 - ell * 0.235, 0.122, 0.205))
-                image = _show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
-                axes.set_title(f"m = {m}".replace("-", "−"), fontsize=7.5, pad=1.5)
-            figure.text(0.015, 0.845 - ell * 0.235, f"l = {ell}", fontsize=9)
-        bar = figure.add_axes((0.86, 0.75, 0.015, 0.2))
-        figure.colorbar(image, cax=bar, ticks=[-0.5, 0, 0.5])
+    figure = Figure(figsize=(7.0, 4.1))
+    top = float(np.abs(Y).max())
+    for ell in range(4):
+        for m in range(-ell, ell + 1):
+            axes = figure.add_axes((0.075 + (m + 3) * 0.128, 0.745 - ell * 0.235, 0.122, 0.205))
+            image = parts.show_ball(axes, Y[:, ell * (ell + 1) + m], inside, top)
+            axes.set_title(f"m = {m}".replace("-", "−"), fontsize=7.5, pad=1.5)
+        figure.text(0.015, 0.845 - ell * 0.235, f"l = {ell}", fontsize=9)
+    bar = figure.add_axes((0.86, 0.75, 0.015, 0.2))
+    figure.colorbar(image, cax=bar, ticks=[-0.5, 0, 0.5])
     return figure, facts
 
 
 def fig2_projection(module):
     """A sky and its projections to degree 0, 1, 2 and 4."""
     d, weights = module.quadrature(40)
-    places, shape = _map(48)
-    rows, shown = {}, [("the sky", _sky(places)[:, 0])]
+    places, shape = parts.direction_map(48)
+    rows, shown = {}, [("the sky", parts.sky(places)[:, 0])]
     for degree in (0, 1, 2, 4):
-        c = module.sh_project(d, weights, _sky(d), degree)
+        c = module.sh_project(d, weights, parts.sky(d), degree)
         shown.append((f"degree {degree}", (module.sh_basis(places, degree) @ c)[:, 0]))
         again = module.sh_basis(d, degree) @ c
-        rows[degree] = again, float(np.sqrt(weights @ (again - _sky(d)) ** 2)[0])
-    means = [float((weights @ again)[0] / (weights @ _sky(d))[0]) for again, _ in rows.values()]
+        rows[degree] = again, float(np.sqrt(weights @ (again - parts.sky(d)) ** 2)[0])
+    means = [
+        float((weights @ again)[0] / (weights @ parts.sky(d))[0]) for again, _ in rows.values()
+    ]
     errors = [error for _, error in rows.values()]
     four = rows[4][0][:, 0]
     peak = shown[-1][1]
     facts = {
-        "the error decreases with the degree": bool((np.diff(errors) < 0).all()),
-        "the mean is exact from the first": (max(abs(mean - 1) for mean in means), 0, 1e-9),
-        "degree 4 finds the light to 10 degrees": (
-            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LIGHT))),
-            0,
-            10,
+        "the error decreases with the degree": Fact(
+            (np.diff(errors) < 0).all(), red="project_summed"
         ),
-        "degree 4 keeps less than half of the light's peak": (
-            float(peak.max() / shown[0][1].max()),
-            0.1,
-            0.5,
+        "the mean is exact from the first": Fact(
+            max(abs(mean - 1) for mean in means), 0, 1e-9, red="project_mean"
         ),
-        "degree 4 is below zero on more than 10 % of the sphere": (
-            float(weights[four < 0].sum() / (4 * np.pi)),
-            0.1,
-            0.5,
+        "degree 4 finds the light to 10 degrees": Fact(
+            np.degrees(np.arccos(places[np.argmax(peak)] @ LIGHT)), 0, 10, red="recurrence_sign"
         ),
-        "the sky is nowhere below zero": (float(shown[0][1].min()), 0, 1),
+        "degree 4 keeps less than half of the light's peak": Fact(
+            peak.max() / shown[0][1].max(), 0.1, 0.5, red="project_summed"
+        ),
+        "degree 4 is below zero on more than 10 % of the sphere": Fact(
+            weights[four < 0].sum() / (4 * np.pi), 0.1, 0.5, red="start_of_ones"
+        ),
+        "the sky is nowhere below zero": Fact(
+            shown[0][1].min(), 0, 1, held="about the scene alone"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.1), layout="constrained")
-        panels = figure.subplots(2, 3)
-        for axes, (title, values) in zip(panels.flat, shown, strict=False):
-            image = axes.imshow(
-                values.reshape(shape),
-                cmap=signed_color_map(),
-                vmin=-1.5,
-                vmax=1.5,
-                extent=(0, 360, -1, 1),
-                aspect=90,
-            )
-            axes.set(title=title, xticks=[], yticks=[-1, 1])
-        panels[1, 0].set(xticks=[0, 180, 360], xlabel="angle around z, degrees", ylabel="z")
-        panels[0, 0].set_ylabel("z")
-        axes = panels[1, 2]
-        axes.bar(range(4), errors, color=BLUE, width=0.6)
-        axes.set(title="error, root of the integral", xlabel="degree", xticks=range(4))
-        axes.set_xticklabels(["0", "1", "2", "4"])
-        axes.spines[["top", "right"]].set_visible(False)
-        figure.colorbar(
-            image, ax=panels[:, :2], ticks=[-1, 0, 1], shrink=0.6, location="left", extend="both"
+    figure, panels = subplots(7.0, 3.1, 2, 3)
+    for axes, (title, values) in zip(panels.flat, shown, strict=False):
+        image = axes.imshow(
+            values.reshape(shape),
+            cmap=signed_color_map(),
+            vmin=-1.5,
+            vmax=1.5,
+            extent=(0, 360, -1, 1),
+            aspect=90,
         )
+        axes.set(title=title, xticks=[], yticks=[-1, 1])
+    panels[1, 0].set(xticks=[0, 180, 360], xlabel="angle around z, degrees", ylabel="z")
+    panels[0, 0].set_ylabel("z")
+    axes = panels[1, 2]
+    axes.bar(range(4), errors, color=BLUE, width=0.6)
+    axes.set(title="error, root of the integral", xlabel="degree", xticks=range(4))
+    axes.set_xticklabels(["0", "1", "2", "4"])
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.colorbar(
+        image, ax=panels[:, :2], ticks=[-1, 0, 1], shrink=0.6, location="left", extend="both"
+    )
     return figure, facts
 
 
 def fig3_tangent(module):
     """A function of direction, and its derivative with respect to v, from two sides."""
     c = np.random.default_rng(4).uniform(-1, 1, (16, 1))
-    d, inside = _ball(61)
-    at, _ = _ball(15)
+    d, inside = parts.ball(61)
+    at, _ = parts.ball(15)
     at = at[at[:, 1] < -0.3]
     from_above = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    parts, rises, drawn = [], [], []
+    along, rises, drawn = [], [], []
     for turn in (np.eye(3), from_above):  # rows: what lies to the right, behind, up
         v = at @ turn
         many = np.broadcast_to(c, (len(v), 16, 1)).copy()
         _, arrows = module.sh_color_adjoint(many, v, np.ones((len(v), 1)))
-        parts.append(np.abs(np.sum(arrows * v, axis=1)).max())
+        along.append(np.abs(np.sum(arrows * v, axis=1)).max())
         step = 1e-4 * arrows
         rises.append(module.sh_color(many, v + step) > module.sh_color(many, v))
         drawn.append((module.sh_basis(d @ turn, 3) @ c, arrows @ turn.T))
     facts = {
-        "arrows are tangent": (float(max(parts)), 0, 1e-12),
-        "along each arrow f rises": bool(np.all(rises)),
-        "over 200 arrows": (float(2 * len(at)), 200, 400),
+        "arrows are tangent": Fact(max(along), 0, 1e-12, red="no_projection"),
+        "along each arrow f rises": Fact(np.all(rises), red="wave_slope_sign"),
+        "over 200 arrows": Fact(2 * len(at), 200, 400, held="about what is drawn"),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        panels = figure.subplots(1, 2)
-        top = max(float(np.abs(values).max()) for values, _ in drawn)
-        titles = ("from −y: x to the right, z up", "from +z: x to the right, y up")
-        for axes, (values, arrows), title in zip(panels, drawn, titles, strict=True):
-            image = _show_ball(axes, values[:, 0], inside, top)
-            axes.quiver(
-                at[:, 0], at[:, 2], arrows[:, 0], arrows[:, 2], color=INK, scale=26, width=0.006
-            )
-            axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), title=title)
-        figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.7, label="f")
+    figure, panels = subplots(7.0, 3.3, 1, 2)
+    top = max(float(np.abs(values).max()) for values, _ in drawn)
+    titles = ("from −y: x to the right, z up", "from +z: x to the right, y up")
+    for axes, (values, arrows), title in zip(panels, drawn, titles, strict=True):
+        image = parts.show_ball(axes, values[:, 0], inside, top)
+        axes.quiver(
+            at[:, 0], at[:, 2], arrows[:, 0], arrows[:, 2], color=INK, scale=26, width=0.006
+        )
+        axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), title=title)
+    figure.colorbar(image, ax=panels, ticks=[-1, 0, 1], shrink=0.7, label="f")
     return figure, facts
 
 
 def fig4_irradiance(module):
     """Irradiance by brute force, from nine coefficients, and the difference by degree."""
     d, weights = module.quadrature(90)
-    normals, shape = _map(24)
-    light = _sky(d, 6.0, 1.0)
+    normals, shape = parts.direction_map(24)
+    light = parts.sky(d, 6.0, 1.0)
     brute = np.maximum(normals @ d.T, 0) @ (weights[:, None] * light)
     mean = float(brute.mean())
     found, errors = {}, []
@@ -155,68 +154,70 @@ def fig4_irradiance(module):
         found[degree] = module.probe_irradiance(c, np.zeros((len(normals), 3)), normals)
         errors.append(float(np.abs(found[degree] - brute).max() / mean))
     facts = {
-        "nine coefficients are within 3 % of the mean": (errors[2], 0, 0.03),
-        "the error of degree 1 is more than ten times as large": (errors[1] / errors[2], 10, 100),
-        "degree 3 adds nothing": (float(np.abs(found[3] - found[2]).max()), 0, 1e-12),
-        "the error of degree 4 is smaller than that of degree 2": (errors[4] / errors[2], 0, 0.9),
+        "nine coefficients are within 3 % of the mean": Fact(errors[2], 0, 0.03, red="lobe_half"),
+        "the error of degree 1 is more than ten times as large": Fact(
+            errors[1] / errors[2], 10, 100, red="no_lobe"
+        ),
+        "degree 3 adds nothing": Fact(np.abs(found[3] - found[2]).max(), 0, 1e-12, red="lobe_flat"),
+        "the error of degree 4 is smaller than that of degree 2": Fact(
+            errors[4] / errors[2], 0, 0.9, red="lobe_no_fourth"
+        ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
-        panels = figure.subplots(2, 3)
-        high = float(brute.max()) * 1.05
-        sky = _sky(normals, 6.0, 1.0)
-        off = (found[2] - brute) / mean * 100
-        far = 3.0
-        for axes, values, title, limits, colors in (
-            (panels[0, 0], sky, "light from a direction", (0, 5), "viridis"),
-            (panels[0, 1], brute, "irradiance, brute force", (0, high), "viridis"),
-            (panels[0, 2], found[2], "nine coefficients", (0, high), "viridis"),
-            (panels[1, 0], off, "difference, % of mean", (-far, far), signed_color_map()),
-        ):
-            image = axes.imshow(
-                values.reshape(shape),
-                cmap=colors,
-                vmin=limits[0],
-                vmax=limits[1],
-                extent=(0, 360, -1, 1),
-                aspect=90,
+    figure, panels = subplots(7.0, 3.3, 2, 3)
+    high = float(brute.max()) * 1.05
+    sky = parts.sky(normals, 6.0, 1.0)
+    off = (found[2] - brute) / mean * 100
+    far = 3.0
+    for axes, values, title, limits, colors in (
+        (panels[0, 0], sky, "light from a direction", (0, 5), "viridis"),
+        (panels[0, 1], brute, "irradiance, brute force", (0, high), "viridis"),
+        (panels[0, 2], found[2], "nine coefficients", (0, high), "viridis"),
+        (panels[1, 0], off, "difference, % of mean", (-far, far), signed_color_map()),
+    ):
+        image = axes.imshow(
+            values.reshape(shape),
+            cmap=colors,
+            vmin=limits[0],
+            vmax=limits[1],
+            extent=(0, 360, -1, 1),
+            aspect=90,
+        )
+        axes.set(title=title, xticks=[0, 180, 360], yticks=[-1, 0, 1])
+        if axes is not panels[0, 1]:
+            figure.colorbar(
+                image, ax=axes, shrink=0.7, ticks=[0, 2, 4] if limits[0] == 0 else [-3, 0, 3]
             )
-            axes.set(title=title, xticks=[0, 180, 360], yticks=[-1, 0, 1])
-            if axes is not panels[0, 1]:
-                figure.colorbar(
-                    image, ax=axes, shrink=0.7, ticks=[0, 2, 4] if limits[0] == 0 else [-3, 0, 3]
-                )
-        panels[0, 0].set_ylabel("z")
-        panels[1, 0].set(ylabel="z", xlabel="angle around z, degrees")
-        axes = panels[1, 1]
-        axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
-        axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
-        axes.set(yscale="log", xlabel="highest degree", title="largest error, % of mean")
-        axes.spines[["top", "right"]].set_visible(False)
-        axes = panels[1, 2]
-        factors = [
-            float(
-                module.probe_irradiance(
-                    np.eye((ell + 1) ** 2)[ell * (ell + 1)][None, None, None, :, None],
-                    np.zeros((1, 3)),
-                    np.array([[0, 0, 1.0]]),
-                )[0, 0]
-                / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
-            )
-            for ell in range(5)
-        ]
-        axes.bar(range(5), factors, color=ORANGE, width=0.6)
-        axes.axhline(0, color=FRAME, linewidth=0.7)
-        axes.set(xlabel="degree l", title="factor of the lobe")
-        axes.spines[["top", "right"]].set_visible(False)
+    panels[0, 0].set_ylabel("z")
+    panels[1, 0].set(ylabel="z", xlabel="angle around z, degrees")
+    axes = panels[1, 1]
+    axes.bar(range(5), np.array(errors) * 100, color=BLUE, width=0.6)
+    axes.axhline(3, color=CRIMSON, linewidth=1, linestyle="--")
+    axes.set(yscale="log", xlabel="highest degree", title="largest error, % of mean")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes = panels[1, 2]
+    factors = [
+        float(
+            module.probe_irradiance(
+                np.eye((ell + 1) ** 2)[ell * (ell + 1)][None, None, None, :, None],
+                np.zeros((1, 3)),
+                np.array([[0, 0, 1.0]]),
+            )[0, 0]
+            / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
+        )
+        for ell in range(5)
+    ]
+    axes.bar(range(5), factors, color=ORANGE, width=0.6)
+    axes.axhline(0, color=FRAME, linewidth=0.7)
+    axes.set(xlabel="degree l", title="factor of the lobe")
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
 def fig5_glyphs(module):
     """Change of the colors of a slice by a step against the derivative, by direction."""
     n, light = 12, np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
-    density, c = _ball_scene(module, n, light)
-    rays = _photographs(40, 16)
+    density, c = parts.ball_scene(module, n, light)
+    rays = parts.photographs(40, 16)
     samples = module.march(density.shape, rays)
     target = module.render(density, c, samples)
     gray = np.zeros_like(c)
@@ -224,7 +225,7 @@ def fig5_glyphs(module):
     _, _, d_c = module.loss_and_grad(density, gray, samples, target)
     slice_ = -(d_c[:, n // 2 - 1] + d_c[:, n // 2])[:, :, :, 0]
     energy = np.sum(d_c**2, axis=(3, 4))
-    near = _dilated(density > 0)
+    near = parts.dilated(density > 0)
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     normal = x / np.linalg.norm(x, axis=-1, keepdims=True)
     lit = (density > 4) & (normal @ light > 0.9) & (np.linalg.norm(x, axis=-1) > 0.4)
@@ -234,48 +235,47 @@ def fig5_glyphs(module):
     change = slice_ @ module.sh_basis(ring, 2).T
     strong = np.linalg.norm(slice_, axis=-1) > 0.3 * np.linalg.norm(slice_, axis=-1).max()
     facts = {
-        "cells that face the highlight get brighter toward it": (float((gain > 0).mean()), 0.95, 1),
-        "more than 80 % of the energy lies in or next to the ball": (
-            float(energy[near].sum() / energy.sum()),
-            0.8,
-            1,
+        "cells that face the highlight get brighter toward it": Fact(
+            (gain > 0).mean(), 0.95, 1, red="d_coefficients_without_g"
         ),
-        "most of the larger glyphs have both colors": (
-            float(((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean()),
+        "more than 80 % of the energy lies in or next to the ball": Fact(
+            energy[near].sum() / energy.sum(), 0.8, 1, held="the given renderer sees to it"
+        ),
+        "most of the larger glyphs have both colors": Fact(
+            ((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean(),
             0.6,
             1,
+            red="recurrence_sign",
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(5.6, 5.2), layout="constrained")
-        axes = figure.subplots()
-        middle = density[:, n // 2].T
-        axes.imshow(
-            middle, cmap="gray_r", vmin=0, vmax=30, origin="lower", extent=(-0.5, n - 0.5) * 2
-        )
-        top = np.abs(change).max()
-        for i in range(n):
-            for k in range(n):
-                r = 0.8 * np.sqrt(np.abs(change[i, k]) / top)
-                for sign, color in ((1, CRIMSON), (-1, BLUE)):
-                    part = np.where(sign * change[i, k] > 0, r, 0)
-                    axes.fill(
-                        i + part * ring[:, 0], k + part * ring[:, 2], color=color, linewidth=0.3
-                    )
-        axes.annotate(
-            "", (11.2, 11.2), (9.9, 9.9), arrowprops={"arrowstyle": "->", "color": INK, "lw": 1.5}
-        )
-        axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
-        axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
-        axes.set_title("change by a step: red brightens, blue darkens")
+    figure, axes = subplots(5.6, 5.2)
+    middle = density[:, n // 2].T
+    axes.imshow(middle, cmap="gray_r", vmin=0, vmax=30, origin="lower", extent=(-0.5, n - 0.5) * 2)
+    top = np.abs(change).max()
+    for i in range(n):
+        for k in range(n):
+            r = 0.8 * np.sqrt(np.abs(change[i, k]) / top)
+            for sign, color in ((1, CRIMSON), (-1, BLUE)):
+                part = np.where(sign * change[i, k] > 0, r, 0)
+                axes.fill(i + part * ring[:, 0], k + part * ring[:, 2], color=color, linewidth=0.3)
+    axes.annotate(
+        "", (11.2, 11.2), (9.9, 9.9), arrowprops={"arrowstyle": "->", "color": INK, "lw": 1.5}
+    )
+    axes.text(9.8, 11.1, "highlight", ha="center", fontsize=8)
+    axes.set(xlabel="x, cells", ylabel="z, cells", xticks=range(0, n, 2), yticks=range(0, n, 2))
+    axes.set_title("change by a step: red brightens, blue darkens")
     return figure, facts
 
 
 def fig6_coarse_to_fine(module):
     """A held-out view by a fixed grid and coarse to fine; PSNR of such views against steps."""
     light = np.array([0.48, -0.6, 0.64])
-    density, c = _ball_scene(module, 20, light, second=True)
-    rays, unseen, large = _photographs(30, 6), _photographs(10, 6, 0.37), _photographs(3, 28, 0.9)
+    density, c = parts.ball_scene(module, 20, light, second=True)
+    rays, unseen, large = (
+        parts.photographs(30, 6),
+        parts.photographs(10, 6, 0.37),
+        parts.photographs(3, 28, 0.9),
+    )
     large = large[:, 28 * 28 : 2 * 28 * 28]
     target, truth, view = (
         module.render(density, c, module.march(density.shape, each))
@@ -293,199 +293,45 @@ def fig6_coarse_to_fine(module):
             count = (1, end) if levels == 1 else (end // 6, 6)
             found = module.fit_plenoxels(*first, rays, target, *count)[:2]
             stages.append((end, found))
-        scores = [psnr(_seen(module, each, unseen), truth) for _, each in stages]
-        own = psnr(_seen(module, found, rays), target)
+        scores = [psnr(parts.seen(module, each, unseen), truth) for _, each in stages]
+        own = psnr(parts.seen(module, found, rays), target)
         ends = [end for end, _ in stages]
-        runs[name] = ends, scores, _seen(module, found, large), own
+        runs[name] = ends, scores, parts.seen(module, found, large), own
     fixed, fine, plain = (runs[name][1] for name in runs)
     cells = module.fit_plenoxels(*first, rays, target, 3, 0)[0].shape
     facts = {
-        "16 cells a side at the end": cells == (16, 16, 16),
-        "coarse to fine ends more than 4 dB above": (fine[-1] - fixed[-1], 4, 20),
-        "the fixed grid fits its own photographs to better than 27 dB": (
-            runs["fixed grid"][3],
-            27,
-            60,
+        "16 cells a side at the end": Fact(cells == (16, 16, 16), held="the checks look at shapes"),
+        "coarse to fine ends more than 4 dB above": Fact(
+            fine[-1] - fixed[-1], 4, 20, red="steps_at_last_level"
         ),
-        "on held-out views the fixed grid gets worse after its best": (
-            max(fixed) - fixed[-1],
-            0.5,
-            10,
+        "the fixed grid fits its own photographs to better than 27 dB": Fact(
+            runs["fixed grid"][3], 27, 60, red="uphill"
         ),
-        "degree 0 loses more than 2 dB": (fine[-1] - plain[-1], 2, 20),
+        "on held-out views the fixed grid gets worse after its best": Fact(
+            max(fixed) - fixed[-1], 0.5, 10, red="coefficients_frozen"
+        ),
+        "degree 0 loses more than 2 dB": Fact(fine[-1] - plain[-1], 2, 20, red="coefficients_cut"),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-        grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))
-        shown = [("truth", view)] + [(name, run[2]) for name, run in runs.items()]
-        for k, (title, values) in enumerate(shown):
-            axes = figure.add_subplot(grid[0, k])
-            screen = np.clip(values, 0, 1).reshape(28, 28) ** (1 / 2.2)
-            axes.imshow(screen, cmap="gray", vmin=0, vmax=1)
-            axes.set(xticks=[], yticks=[], title=title)
-        axes = figure.add_subplot(grid[1, :])
-        looks = ((GRAY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
-        for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
-            axes.plot(ends, scores, look, color=color, markersize=5)
-            axes.annotate(
-                name, (ends[-1], scores[-1]), (7, 0), textcoords="offset points", va="center"
-            )
-        axes.set(xlabel="step", ylabel="PSNR of held-out views [dB]", xlim=(-0.5, 23.5))
-        axes.set_xticks(range(0, 19, 3))
-        axes.grid(visible=True)
-        axes.spines[["top", "right"]].set_visible(False)
+    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+    grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))
+    shown = [("truth", view)] + [(name, run[2]) for name, run in runs.items()]
+    for k, (title, values) in enumerate(shown):
+        axes = figure.add_subplot(grid[0, k])
+        screen = np.clip(values, 0, 1).reshape(28, 28) ** (1 / 2.2)
+        axes.imshow(screen, cmap="gray", vmin=0, vmax=1)
+        axes.set(xticks=[], yticks=[], title=title)
+    axes = figure.add_subplot(grid[1, :])
+    looks = ((GRAY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
+    for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
+        axes.plot(ends, scores, look, color=color, markersize=5)
+        note(axes, name, (ends[-1], scores[-1]), (7, 0), va="center")
+    axes.set(xlabel="step", ylabel="PSNR of held-out views [dB]", xlim=(-0.5, 23.5))
+    axes.set_xticks(range(0, 19, 3))
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
     return figure, facts
 
 
-def _seen(module, volume, rays):
-    return module.render(*volume, module.march(volume[0].shape, rays))
-
-
-def _ball(n):
-    """Directions of the front half of a ball, seen along +y from y = -1, and which pixels."""
-    x, z = np.meshgrid(np.linspace(-1, 1, n), np.linspace(1, -1, n))
-    inside = x**2 + z**2 < 1
-    y = -np.sqrt(np.maximum(1 - x**2 - z**2, 0))
-    return np.stack([x, y, z], axis=-1)[inside], inside
-
-
-def _show_ball(axes, values, inside, top):
-    picture = np.full(inside.shape, np.nan)
-    picture[inside] = values
-    image = axes.imshow(
-        picture,
-        cmap=signed_color_map(),
-        vmin=-top,
-        vmax=top,
-        extent=(-1, 1, -1, 1),
-        interpolation="nearest",
-    )
-    rim = Circle((0, 0), 0.985, facecolor="none", edgecolor=FRAME, linewidth=0.9)
-    axes.add_patch(rim)
-    image.set_clip_path(rim)
-    axes.set_axis_off()
-    return image
-
-
-def _map(rows):
-    """Directions (N, 3) of an equal-area map of the sphere: angle to the right, z up."""
-    z = 1 - (np.arange(rows) + 0.5) * 2 / rows
-    phi = (np.arange(2 * rows) + 0.5) * np.pi / rows
-    z, phi = np.meshgrid(z, phi, indexing="ij")
-    r = np.sqrt(1 - z * z)
-    return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3), z.shape
-
-
-LIGHT = np.array([0.48, 0.64, 0.6])
-
-
-def _sky(d, sharp=25.0, pale=0.3):
-    """Radiance (N, 1): pale above, dark below, and a light, smaller for a larger exponent."""
-    return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LIGHT[:, None] - 1))
-
-
-def _ball_scene(module, n, light, second=False):
-    """A glossy ball, perhaps with a second one: density (n, n, n) and coefficients."""
-    x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
-    radii = [0.6] if not second else [0.45, 0.3]
-    away = [np.linalg.norm(x - center, axis=-1) for center in centers]
-    inside = [np.clip((r - a) * n / 3 + 0.5, 0, 1) for r, a in zip(radii, away, strict=True)]
-    which = np.argmax(inside, axis=0)
-    normal = x - np.array(centers)[which]
-    normal = normal / (np.linalg.norm(normal, axis=-1, keepdims=True) + 1e-12)
-    facing = normal @ light
-    mirrored = 2 * facing[..., None] * normal - light
-    c = module.sh_basis(mirrored.reshape(-1, 3), 2) * np.repeat([0.9, 0.8, 0.6], [1, 3, 5])
-    c = c.reshape(n, n, n, 9, 1)
-    c[..., 0, 0] += np.array([2.5, 1.4])[which] * (0.3 + 0.5 * np.maximum(facing, 0))
-    return 8 * np.max(inside, axis=0), c
-
-
-def _photographs(views, pixels, twist=0.0, away=3.2, view_angle=0.75):
-    """Rays of cameras distributed uniformly around the center, at which they look."""
-    height = 1 - (np.arange(views) + 0.5) * 2 / views
-    phi = np.arange(views) * np.pi * (3 - np.sqrt(5)) + 2 * np.pi * twist
-    ring = np.sqrt(1 - height**2)
-    tangent = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * np.tan(view_angle / 2)
-    origins, directions = [], []
-    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
-        right = np.cross([0.0, 0.0, 1.0], place)
-        right /= np.linalg.norm(right)
-        up = np.cross(place, right)
-        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
-        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(away * place, (pixels**2, 1)))
-    return np.stack([np.concatenate(origins), np.concatenate(directions)])
-
-
-def _dilated(mask):
-    """A mask and all cells next to it."""
-    grown = mask.copy()
-    for axis in range(3):
-        for step in (1, -1):
-            grown |= np.roll(mask, step, axis)
-    return grown
-
-
-FIGURES = {
-    "fig1_harmonics": fig1_harmonics,
-    "fig2_projection": fig2_projection,
-    "fig3_tangent": fig3_tangent,
-    "fig4_irradiance": fig4_irradiance,
-    "fig5_glyphs": fig5_glyphs,
-    "fig6_coarse_to_fine": fig6_coarse_to_fine,
-}
-RED = {
-    "fig1_harmonics": "no_phase",
-    "fig2_projection": "recurrence_sign",
-    "fig3_tangent": "no_projection",
-    "fig4_irradiance": "lobe_flat",
-    "fig5_glyphs": "d_coefficients_without_g",
-    "fig6_coarse_to_fine": "coefficients_frozen",
-}
-# A mutant for each fact.
-RED_FACTS = {
-    "fig1_harmonics": {
-        "l = 1, m = 1 is negative toward +x": "no_phase",
-        "l = 1, m = 0 is positive toward +z": "pole_along_y",
-        "odd degrees change sign at the opposite point, even ones do not": "angle_once",
-        "all but the first have mean zero": "recurrence_sign",
-    },
-    "fig2_projection": {
-        "the error decreases with the degree": "project_summed",
-        "the mean is exact from the first": "project_mean",
-        "degree 4 finds the light to 10 degrees": "recurrence_sign",
-        "degree 4 keeps less than half of the light's peak": "project_summed",
-        "degree 4 is below zero on more than 10 % of the sphere": "start_of_ones",
-    },
-    "fig3_tangent": {
-        "arrows are tangent": "no_projection",
-        "along each arrow f rises": "wave_slope_sign",
-    },
-    "fig4_irradiance": {
-        "nine coefficients are within 3 % of the mean": "lobe_half",
-        "the error of degree 1 is more than ten times as large": "no_lobe",
-        "degree 3 adds nothing": "lobe_flat",
-        "the error of degree 4 is smaller than that of degree 2": "lobe_no_fourth",
-    },
-    "fig5_glyphs": {
-        "cells that face the highlight get brighter toward it": "d_coefficients_without_g",
-        "most of the larger glyphs have both colors": "recurrence_sign",
-    },
-    "fig6_coarse_to_fine": {
-        "coarse to fine ends more than 4 dB above": "steps_at_last_level",
-        "the fixed grid fits its own photographs to better than 27 dB": "uphill",
-        "on held-out views the fixed grid gets worse after its best": "coefficients_frozen",
-        "degree 0 loses more than 2 dB": "coefficients_cut",
-    },
-}
-HELD = {
-    "fig1_harmonics": {"degree 0 is the same everywhere": "no known mistake makes it vary"},
-    "fig2_projection": {"the sky is nowhere below zero": "about the scene alone"},
-    "fig3_tangent": {"over 200 arrows": "about what is drawn"},
-    "fig5_glyphs": {
-        "more than 80 % of the energy lies in or next to the ball": "the given renderer sees to it"
-    },
-    "fig6_coarse_to_fine": {"16 cells a side at the end": "the checks look at shapes"},
-}
+FIGURES = figures_of(
+    fig1_harmonics, fig2_projection, fig3_tangent, fig4_irradiance, fig5_glyphs, fig6_coarse_to_fine
+)

@@ -11,7 +11,23 @@ how far you are. The other functions are given and stay as they are. All numbers
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vectors = Annotated[np.ndarray, "N 3"]
+Basis = Annotated[np.ndarray, "N K"]
+Weights = Annotated[np.ndarray, "N"]
+Values = Annotated[np.ndarray, "N C"]
+Coefficients = Annotated[np.ndarray, "K C"]
+RowCoefficients = Annotated[np.ndarray, "N K C"]
+Rotation = Annotated[np.ndarray, "3 3"]
+Density = Annotated[np.ndarray, "X Y Z"]
+Probes = Annotated[np.ndarray, "X Y Z K C"]
+Rays = Annotated[np.ndarray, "2 R 3"]  # origins, directions
+Colors = Annotated[np.ndarray, "R C"]
+Losses = Annotated[np.ndarray, "steps"]
 
 SAMPLES = 20  # per ray
 RATE = 0.1  # of Adam
@@ -43,7 +59,7 @@ def _size(ell, m):
 # <<< solution
 
 
-def sh_basis(directions, degree):
+def sh_basis(directions: Vectors, degree: int) -> Basis:
     """All harmonics up to a degree, at given directions.
 
     Args:
@@ -78,7 +94,7 @@ def quadrature(degree):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1), weights
 
 
-def sh_project(directions, weights, values, degree):
+def sh_project(directions: Vectors, weights: Weights, values: Values, degree: int) -> Coefficients:
     """Coefficients of a function that is known at the directions of a quadrature.
 
     Args:
@@ -110,7 +126,9 @@ def sh_color(coefficients, v):
     return np.einsum("nk,nkc->nc", sh_basis(d, degree), coefficients)
 
 
-def sh_color_adjoint(coefficients, v, g):
+def sh_color_adjoint(
+    coefficients: RowCoefficients, v: Vectors, g: Values
+) -> tuple[RowCoefficients, Vectors]:
     """The adjoint of `sh_color` with respect to the coefficients and the vectors.
 
     Args:
@@ -142,7 +160,7 @@ def sh_color_adjoint(coefficients, v, g):
     # <<< solution
 
 
-def sh_rotate(coefficients, R):
+def sh_rotate(coefficients: Coefficients, R: Rotation) -> Coefficients:
     """Coefficients of a rotated function: the value that was at d is now at R d.
 
     Args:
@@ -181,7 +199,7 @@ def corners(shape, p):
     return np.stack(index), np.stack(weight)
 
 
-def probe_irradiance(probes, p, normals):
+def probe_irradiance(probes: Probes, p: Vectors, normals: Vectors) -> Values:
     """Irradiance of surfaces: interpolate light probes, apply the cosine lobe.
 
     Args:
@@ -297,7 +315,9 @@ class Adam:
         return x - RATE * m / (np.sqrt(v) + 1e-8)
 
 
-def fit_plenoxels(density, coefficients, rays, target, levels, steps):
+def fit_plenoxels(
+    density: Density, coefficients: Probes, rays: Rays, target: Colors, levels: int, steps: int
+) -> tuple[Density, Probes, Losses]:
     """Recover a volume coarse to fine.
 
     Args:

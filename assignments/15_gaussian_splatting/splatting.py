@@ -20,7 +20,27 @@ other functions are given and stay as they are. All numbers are float64.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Annotated, Any
+
 import numpy as np
+
+# Arrays and their shapes; float64 where nothing else is said.
+Vectors = Annotated[np.ndarray, "N 3"]
+Quaternions = Annotated[np.ndarray, "N 4"]
+Covariances = Annotated[np.ndarray, "N 3 3"]
+PerGaussian = Annotated[np.ndarray, "N"]
+ScreenPoints = Annotated[np.ndarray, "N 2"]
+ScreenCovariances = Annotated[np.ndarray, "N 3"]  # xx, xy, yy
+Pixels = Annotated[np.ndarray, "P 2"]
+Alphas = Annotated[np.ndarray, "N P"]
+Colors = Annotated[np.ndarray, "N 3"]
+Shown = Annotated[np.ndarray, "P 3"]
+Color = Annotated[np.ndarray, "3"]
+Source = Annotated[np.ndarray, "M"]  # int64
+Scene = dict[str, np.ndarray]
+Camera = dict[str, Any]
+Back = Callable[..., Any]  # a backward pass
 
 LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
 MARGIN = 0.15  # of the image size: how far outside the image J is not clamped
@@ -42,7 +62,7 @@ CROSS = np.array(
 )
 
 
-def covariance(quats, log_scales):
+def covariance(quats: Quaternions, log_scales: Vectors) -> tuple[Covariances, Back]:
     """The covariances of Gaussians.
 
     Args:
@@ -87,7 +107,9 @@ def limits(camera):
     return low, ((1 + MARGIN) * size - camera["center"]) / camera["focal"]
 
 
-def project(means, cov, camera):
+def project(
+    means: Vectors, cov: Covariances, camera: Camera
+) -> tuple[ScreenPoints, ScreenCovariances, PerGaussian, Back]:
     """Means and covariances of Gaussians, projected to the screen.
 
     Args:
@@ -122,7 +144,9 @@ def project(means, cov, camera):
     # <<< solution
 
 
-def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
+def screen_alpha(
+    mean2d: ScreenPoints, cov2d: ScreenCovariances, opacity_logits: PerGaussian, pixels: Pixels
+) -> tuple[Alphas, Back]:
     """The opacity of each splat in each pixel.
 
     Args:
@@ -158,7 +182,9 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
     # <<< solution
 
 
-def composite(alpha, colors, depth, background):
+def composite(
+    alpha: Alphas, colors: Colors, depth: PerGaussian, background: Color
+) -> tuple[Shown, Back]:
     """Alpha compositing of splats, front to back.
 
     Args:
@@ -191,7 +217,9 @@ def composite(alpha, colors, depth, background):
     # <<< solution
 
 
-def render(gaussians, camera, pixels, background):
+def render(
+    gaussians: Scene, camera: Camera, pixels: Pixels, background: Color
+) -> tuple[Shown, Back]:
     """Render some pixels of a scene.
 
     Args:
@@ -228,7 +256,9 @@ def render(gaussians, camera, pixels, background):
     # <<< solution
 
 
-def densify(gaussians, pressure, rng, most):
+def densify(
+    gaussians: Scene, pressure: PerGaussian, rng: np.random.Generator, most: int
+) -> tuple[Scene, Source]:
     """Density control: clone, split and prune Gaussians.
 
     Args:

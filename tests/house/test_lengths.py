@@ -12,19 +12,36 @@ from pathlib import Path
 from support.cpp_functions import functions
 from support.tree import CPP_SUFFIXES, ROOT, relative, walk
 
-CAPS = {"cpp": 400, "python": 400, "tools": 400, "bench": 400, "tests": 300, "cpp/tests": 300}
+CAPS = {
+    "cpp": 400,
+    "python": 400,
+    "tools": 400,
+    "bench": 400,
+    "assignments": 400,
+    "docs": 400,
+    "tests": 300,
+    "cpp/tests": 300,
+}
+SUFFIXES = CPP_SUFFIXES | {".py", ".sh", ".toml"}
+# Rows of data, one for each wrong solution or system.
+DATA = {"mutants.toml", "systems.toml"}
+# Given scenes and a fit stand beside the tasks in the one file that students hand in.
+LONGER = {"assignments/07_path_tracing/path_tracing.py": 600}
 FUNCTION_CAP = 60
 COLUMNS = 100
 
 
 def cap_of(path: str) -> int:
     """The cap of the deepest folder that names one."""
+    if path in LONGER:
+        return LONGER[path]
     return CAPS[max((folder for folder in CAPS if path.startswith(folder + "/")), key=len)]
 
 
 def sources() -> list[Path]:
     folders = [ROOT / name for name in CAPS if "/" not in name and (ROOT / name).is_dir()]
-    return [path for folder in folders for path in walk(folder, CPP_SUFFIXES | {".py", ".sh"})]
+    found = [path for folder in folders for path in walk(folder, SUFFIXES)]
+    return [path for path in found if path.name not in DATA]
 
 
 def long_functions(path: str, text: str) -> list[str]:
@@ -68,7 +85,7 @@ def test_python_functions_stay_below_sixty_lines() -> None:
     found = [
         line
         for path in sources()
-        if path.suffix == ".py"
+        if path.suffix == ".py" and not relative(path).startswith(("assignments/", "docs/"))
         for line in long_functions(relative(path), path.read_text(encoding="utf-8"))
     ]
     assert found == []

@@ -212,5 +212,7 @@ def test_an_unknown_name_is_answered_with_the_nearest(name: str) -> None:
 def test_batches_check_their_shapes() -> None:
     with pytest.raises(ShapeError, match=r"CanvasBatch: points: expected shape \(N, 2\)"):
         CanvasBatch(np.zeros((4, 3)))
-    with pytest.raises(ShapeError, match=r"RayBatch: directions: expected shape \(4, 3\)"):
+    with pytest.raises(
+        ShapeError, match=r"RayBatch: directions: expected shape \(R, 3\) with R = 4"
+    ):
         RayBatch(np.zeros((4, 3)), np.zeros((5, 3)), np.arange(4, dtype=np.uint32))

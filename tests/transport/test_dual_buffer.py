@@ -145,7 +145,7 @@ def test_what_is_refused() -> None:
         loss_and_gradients(tracer, target[1:], weight, **given)
     with pytest.raises(ShapeError, match=r"weight: expected shape \(4, 4, 3\), got \(4, 4\)"):
         loss_and_gradients(tracer, target, weight[..., 0], **given)
-    with pytest.raises(RangeError, match=r"spp: expected at least 1, got 0"):
+    with pytest.raises(RangeError, match=r"spp: expected a whole number of at least 1, got 0"):
         loss_and_gradients(tracer, target, weight, spp=0, seeds=(1, 2))
     with pytest.raises(RangeError, match=r"spread: expected"):
         loss_and_gradients(tracer, target, weight, spread="steep", **given)

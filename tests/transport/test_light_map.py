@@ -229,7 +229,7 @@ def test_mistakes_are_named() -> None:
         IrradianceSensor([0, 0, 0], [1, 0, 0], [1, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="perpendicular"):
         IrradianceSensor([0, 0, 0], [0, 0, 0], [0, 1, 0], 1, 1)
-    with pytest.raises(RangeError, match="at least 1 cell"):
+    with pytest.raises(RangeError, match="height: expected a whole number of at least 1"):
         IrradianceSensor([0, 0, 0], [1, 0, 0], [0, 1, 0], 0, 1)
     with pytest.raises(RangeError, match="max_depth"):
         ParticleOptions(max_depth=0)

@@ -69,10 +69,10 @@ def test_what_a_file_says_is_what_the_scene_has(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "text"),
     [
-        ("albedo = 0.9", "albedo = 1.9", "media.milk: Medium: albedo: expected 0 to 1"),
+        ("albedo = 0.9", "albedo = 1.9", "media.milk: Medium: albedo: expected finite numbers in"),
         ("albedo = 0.9", "albedo = 0.9\nh = 1", "media.milk.h: expected a key that is known"),
         ("sigma_t = [9, 10, 11]", "", "media.milk.sigma_t: expected a value"),
-        ("sigma_t = [9, 10, 11]", "sigma_t = [-9, 10, 11]", "media.milk.*expected finite coeff"),
+        ("sigma_t = [9, 10, 11]", "sigma_t = [-9, 10, 11]", "media.milk.*expected finite numbers"),
         ("cornette_shanks", "cornet", "media.milk.phase: expected one of"),
         ('interior = "milk"', 'interior = "mlik"', "interior: expected one of milk, ink"),
         ('"smoke.npy"', '"fog.npy"', "fog.npy: expected a file, got none"),

@@ -239,7 +239,7 @@ def test_mistakes_are_named(room: tuple[Any, Any], tmp_path: Path) -> None:
         recover(scene, picture, [])
     with pytest.raises(RangeError, match="got one twice"):
         recover(scene, picture, ["emission.lamp", "emission.lamp"])
-    with pytest.raises(RangeError, match=r"start: expected finite numbers in \[0, 1\], got 2.0"):
+    with pytest.raises(RangeError, match=r"start: expected a finite number in \[0, 1\], got 2.0"):
         recover(scene, picture, [Parameter("materials.red.albedo", start=2.0)])
     with pytest.raises(ShapeError, match=r"start: expected a number or shape \(3,\)"):
         recover(scene, picture, [Parameter("materials.red.albedo", start=[0.5, 0.5])])

@@ -62,16 +62,16 @@ def test_three_fits_are_three() -> None:
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: subsurface.dipole(0.0, 1, 1), "dipole: radius: expected finite numbers above 0"),
-        (lambda: subsurface.dipole(1, 0, 1), "dipole: sigma_s: expected finite numbers above 0"),
+        (lambda: subsurface.dipole(0.0, 1, 1), "dipole: radius: expected a finite number above 0"),
+        (lambda: subsurface.dipole(1, 0, 1), "dipole: sigma_s: expected a finite number above 0"),
         (
             lambda: subsurface.dipole(1, 1, -1),
-            "dipole: sigma_a: expected finite numbers of at least",
+            "dipole: sigma_a: expected a finite number of at least",
         ),
         (lambda: subsurface.dipole(np.nan, 1, 1), "dipole: radius: .*got nan"),
         (
             lambda: subsurface.dipole(1, 1, 1, 0.9),
-            "dipole: eta: expected finite numbers in .1, 5., got 0.9",
+            "dipole: eta: expected a finite number in .1, 5., got 0.9",
         ),
         (lambda: subsurface.dipole_albedo(1, np.inf), "dipole_albedo: sigma_a: .*got inf"),
         (
@@ -80,19 +80,19 @@ def test_three_fits_are_three() -> None:
         ),
         (
             lambda: subsurface.normalized_diffusion(1, 1.1, 1),
-            "albedo: expected finite numbers in .0, 1., got 1.1",
+            "albedo: expected a finite number in .0, 1., got 1.1",
         ),
         (
             lambda: subsurface.diffusion_cdf(1, 0.5, 0),
-            "diffusion_cdf: mean_free_path: expected fin",
+            "diffusion_cdf: mean_free_path: expected a fin",
         ),
         (
             lambda: subsurface.sample_radius(1.0, 0.5, 1),
-            "sample_radius: u: expected finite numbers in .0, 1.",
+            "sample_radius: u: expected a finite number in .0, 1.",
         ),
         (
             lambda: half_space_albedo(0.5, 2),
-            "half_space_albedo: cos_theta: expected finite numbers in .0, 1.",
+            "half_space_albedo: cos_theta: expected a finite number in .0, 1.",
         ),
         (
             lambda: subsurface.normalized_diffusion(1, 0.5, 1, "best"),  # type: ignore[arg-type]

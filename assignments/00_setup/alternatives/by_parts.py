@@ -1,7 +1,5 @@
 """Vectorized, with the residual as a variable and the mean taken first."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """From the handout alone: Eq. (2) as it is printed."""
 
-from __future__ import annotations
-
 
 def loss_gradient(p, q):
     N = p.size

@@ -1,7 +1,5 @@
 """Scalar loops over rows and columns."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Written from the handout alone: one line of code for one equation, helpers for what repeats."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Scalar loops: every coordinate on its own, Python floats, lists until the end."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Vectorized: whole arrays, the velocity as a difference of points, both moments at once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

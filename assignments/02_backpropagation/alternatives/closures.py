@@ -1,7 +1,5 @@
 """Closures: a gate keeps a function that gives its slopes when they are asked for, not numbers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

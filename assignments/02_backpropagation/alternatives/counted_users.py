@@ -1,7 +1,5 @@
 """Counts of users: a value is done when all its users are (Kahn's algorithm); arrays inside."""
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np

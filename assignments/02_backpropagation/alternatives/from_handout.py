@@ -1,7 +1,5 @@
 """From the handout alone: its steps and equations, one after another."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A tape: gates write an operation code, and the order is the order of writing."""
 
-from __future__ import annotations
-
 import heapq
 import math
 

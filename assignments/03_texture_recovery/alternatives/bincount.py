@@ -1,7 +1,5 @@
 """Vectorized with flat texel numbers: one gather forwards, one np.bincount a channel backwards."""
 
-from __future__ import annotations
-
 import numpy as np
 from texture_recovery import CURVATURE_ROUNDS, SAFETY
 

@@ -1,7 +1,5 @@
 """From the handout alone: hats of equation (1) for both directions, multiplied as matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 from texture_recovery import CURVATURE_ROUNDS, SAFETY
 

@@ -1,7 +1,5 @@
 """Scalar loops over samples, texels and channels; indices are clamped, not coordinates."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whole arrays with angles and Lambda; samples by projected half disks instead of a cap."""
 
-from __future__ import annotations
-
 import numpy as np
 from reflectance import above, half_vector, hemisphere
 

@@ -1,7 +1,5 @@
 """Written from the handout's equations, in their order and with their letters."""
 
-from __future__ import annotations
-
 import numpy as np
 from reflectance import above, half_vector, hemisphere, schlick, stretched
 

@@ -1,7 +1,5 @@
 """Scalar loops: one pair of directions at a time, by angles and tangents."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Written from the handout's equations alone, with whole arrays and masks; no stack but calls."""
 
-from __future__ import annotations
-
 import numpy as np
 from rays import CLOSE, LEAF, T_MIN
 

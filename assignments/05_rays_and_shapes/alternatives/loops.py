@@ -1,7 +1,5 @@
 """Loops over single rays, triangles and things, in plain numbers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

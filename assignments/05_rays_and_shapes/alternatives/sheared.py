@@ -1,7 +1,5 @@
 """Unit directions, triangles in a plane across the ray, tangents for glass, a queue by entry."""
 
-from __future__ import annotations
-
 import heapq
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Written from the handout alone, formula by formula."""
 
-from __future__ import annotations
-
 import numpy as np
 from path_tracing import (
     ALWAYS,

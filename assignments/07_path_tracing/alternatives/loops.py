@@ -1,7 +1,5 @@
 """Loops over single rows where that is cheap; one strategy after the other."""
 
-from __future__ import annotations
-
 import numpy as np
 from path_tracing import (
     ALWAYS,

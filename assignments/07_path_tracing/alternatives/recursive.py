@@ -1,7 +1,5 @@
 """Two explicit blocks that only look at lit rows; paths by recursion; sums by matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 from path_tracing import (
     ALWAYS,

@@ -1,7 +1,5 @@
 """Scalar loops over rays, steps, axes and channels; the rest of the light from the last step on."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """From the handout alone: what is seen from each step on, farthest first; no subtraction."""
 
-from __future__ import annotations
-
 import numpy as np
 from volume_rendering import ray_samples
 

@@ -4,8 +4,6 @@ That is quadratic in the number of steps, but in slices of NumPy: at 160 steps i
 much as a loop over steps. Written with a second loop over steps it is a mutant (adjoint_quadratic).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from volume_rendering import ray_samples
 

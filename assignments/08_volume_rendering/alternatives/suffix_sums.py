@@ -1,7 +1,5 @@
 """Whole arrays throughout: a ray is kept whole, sums run from its end, np.bincount."""
 
-from __future__ import annotations
-
 import numpy as np
 from volume_rendering import ray_samples
 

@@ -1,7 +1,5 @@
 """From the handout alone: functions for each equation, differences by np.diff and padding."""
 
-from __future__ import annotations
-
 import numpy as np
 from volume_recovery import FLOOR, SAMPLES, SMOOTH, TV, Adam, draw
 from volume_rendering import render_adjoint, render_rays

@@ -1,7 +1,5 @@
 """Loops over pixels, rays and planes of voxels; sums written out."""
 
-from __future__ import annotations
-
 import numpy as np
 from volume_recovery import FLOOR, SAMPLES, SMOOTH, TV, Adam, draw
 from volume_rendering import render_adjoint, render_rays

@@ -1,7 +1,5 @@
 """Whole arrays throughout: homogeneous matrices, slices, all photographs in one batch."""
 
-from __future__ import annotations
-
 import numpy as np
 from volume_recovery import FLOOR, SAMPLES, SMOOTH, TV, Adam, draw
 from volume_rendering import render_adjoint, render_rays

@@ -1,7 +1,5 @@
 """Whole arrays only: tree from the cells upwards, slots claimed in rounds, growth axis by axis."""
 
-from __future__ import annotations
-
 import numpy as np
 from sparse_grids import (
     START,

@@ -1,7 +1,5 @@
 """From the handout alone: recursion over halves, a parameter of the ray, sets of neighbors."""
 
-from __future__ import annotations
-
 import numpy as np
 from sparse_grids import (
     START,

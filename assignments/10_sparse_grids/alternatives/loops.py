@@ -1,7 +1,5 @@
 """Loops over single numbers: depth-first tree, one ray, one voxel, one corner at a time."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Explicit polynomials of each harmonic and their gradients; rotation by least squares."""
 
-from __future__ import annotations
-
 import numpy as np
 from plenoxels import Adam, corners, loss_and_grad, march, quadrature
 

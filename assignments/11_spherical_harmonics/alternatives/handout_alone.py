@@ -1,7 +1,5 @@
 """From the handout alone: recurrence in lists, differentiated step by step."""
 
-from __future__ import annotations
-
 import numpy as np
 from plenoxels import Adam, corners, loss_and_grad, march, quadrature
 

@@ -1,7 +1,5 @@
 """Scalar loops: one direction, one harmonic at a time, by angles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whole arrays, number by number: entries of R, A, B, C of a conic, sums of logarithms."""
 
-from __future__ import annotations
-
 import numpy as np
 from splatting import FAINT, LOW_PASS, NEAR, SHRINK, SMALL, THRESHOLD, depths, limits
 

@@ -1,7 +1,5 @@
 """From the handout alone, stage by stage, with einsum."""
 
-from __future__ import annotations
-
 import numpy as np
 from splatting import CROSS, FAINT, LOW_PASS, NEAR, SHRINK, SMALL, THRESHOLD, depths, limits
 

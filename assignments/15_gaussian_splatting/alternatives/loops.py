@@ -1,7 +1,5 @@
 """One Gaussian at a time, in loops; the blend goes from the back to the front."""
 
-from __future__ import annotations
-
 import numpy as np
 from splatting import FAINT, LOW_PASS, NEAR, SHRINK, SMALL, THRESHOLD, depths, limits
 

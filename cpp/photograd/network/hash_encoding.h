@@ -14,10 +14,11 @@
 // (dw_a / df_a) prod_{b != a} w_b  <features of corner, d_features>.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "photograd/core/parallel.h"
@@ -45,11 +46,20 @@ public:
     [[nodiscard]] const std::vector<HashLevel>& levels() const { return levels_; }
     [[nodiscard]] int features() const { return features_; }
 
-    /// The cell of a point on a level: rows and weights of its corners.
+    /// The cell of a point on a level: where its corners' rows are, and their weights.
     struct Corners {
-        std::array<std::int64_t, 1 << D> row;
-        std::array<std::array<R, 2>, D> weight, slope;  // [axis][side], and d weight / d position
+        std::array<std::array<std::uint32_t, 2>, D> part;  // [axis][side] of the row
+        std::array<std::array<R, 2>, D> weight, slope;     // and d weight / d position
+        std::uint32_t mask;                                // 0 for a dense level
 
+        [[nodiscard]] std::int64_t row(int corner) const {
+            std::uint32_t sum = 0, hash = 0;
+            for (std::size_t a = 0; a < D; ++a) {
+                sum += part[a][corner >> a & 1];
+                hash ^= part[a][corner >> a & 1];
+            }
+            return mask ? hash & mask : sum;
+        }
         [[nodiscard]] R product(int corner) const {
             R w = weight[0][corner & 1];
             for (std::size_t a = 1; a < D; ++a) w *= weight[a][corner >> a & 1];
@@ -63,22 +73,26 @@ public:
         }
     };
 
-    /// p in the unit cube; what lies outside belongs to the outermost cells' border.
+    /// p in the unit cube; a point outside belongs to the border of the outermost cells.
     [[nodiscard]] Corners corners(const HashLevel& level, const R* p) const {
+        constexpr std::uint32_t prime[3] = {1u, 2654435761u, 805459861u};
         Corners c;
+        c.mask = level.dense ? 0 : static_cast<std::uint32_t>(level.rows - 1);
         const R n = static_cast<R>(level.resolution);
-        std::uint32_t low[D];
+        std::uint32_t stride = 1;
         for (std::size_t a = 0; a < D; ++a) {
-            const R inside = p[a] > R(0) ? (p[a] < R(1) ? p[a] : R(1)) : R(0), at = inside * n;
-            const R cell = std::min(static_cast<R>(static_cast<std::int32_t>(at)), n - R(1));
-            const R f = at - cell, rate = inside == p[a] ? n : R(0);
-            low[a] = static_cast<std::uint32_t>(cell);
+            const R inside = std::min(std::max(p[a], R(0)), R(1)), at = inside * n;
+            const auto cell = std::min(static_cast<std::int32_t>(at), level.resolution - 1);
+            const R f = at - static_cast<R>(cell), rate = inside == p[a] ? n : R(0);
             const R w = smoothstep_ ? f * f * (R(3) - R(2) * f) : f;
             const R dw = rate * (smoothstep_ ? R(6) * f * (R(1) - f) : R(1));
             c.weight[a] = {R(1) - w, w};
             c.slope[a] = {-dw, dw};
+            const std::uint32_t low = static_cast<std::uint32_t>(cell),
+                                factor = level.dense ? stride : prime[a];
+            c.part[a] = {low * factor, (low + 1) * factor};
+            stride *= static_cast<std::uint32_t>(level.resolution + 1);
         }
-        for (int k = 0; k < 1 << D; ++k) c.row[static_cast<std::size_t>(k)] = row(level, low, k);
         return c;
     }
 
@@ -86,31 +100,42 @@ public:
     void encode(std::size_t l, const R* table, const R* points, std::int64_t begin,
                 std::int64_t end, FeatureStride stride, R* out) const {
         const HashLevel& level = levels_[l];
-        for (std::int64_t s = begin; s < end; ++s) {
-            const Corners c = corners(level, points + D * s);
-            R* to = out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
-            for (int f = 0; f < features_; ++f) to[f * stride.feature] = R(0);
-            for (int k = 0; k < 1 << D; ++k) {
-                const R w = c.product(k);
-                const R* from = table + features_ * (level.first + c.row[std::size_t(k)]);
-                for (int f = 0; f < features_; ++f) to[f * stride.feature] += w * from[f];
+        const R* rows = table + features_ * level.first;
+        out += std::int64_t(l) * features_ * stride.feature;
+        with_features([&](auto features) {
+            for (std::int64_t s = begin; s < end; ++s) {
+                const Corners c = corners(level, points + D * s);
+                R sum[max_features] = {};
+                for (int k = 0; k < 1 << D; ++k) {
+                    const R w = c.product(k);
+                    const R* from = rows + features * c.row(k);
+                    for (int f = 0; f < features; ++f) sum[f] += w * from[f];
+                }
+                for (int f = 0; f < features; ++f)
+                    out[s * stride.sample + f * stride.feature] = sum[f];
             }
-        }
+        });
     }
 
-    /// Adds to d_table what all samples of one level ask for, in their order.
+    /// Adds to d_table the derivatives of all samples of one level, in their order.
     void scatter(std::size_t l, const R* points, std::int64_t samples, FeatureStride stride,
                  const R* d_out, R* d_table) const {
         const HashLevel& level = levels_[l];
-        for (std::int64_t s = 0; s < samples; ++s) {
-            const Corners c = corners(level, points + D * s);
-            const R* d = d_out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
-            for (int k = 0; k < 1 << D; ++k) {
-                const R w = c.product(k);
-                R* to = d_table + features_ * (level.first + c.row[std::size_t(k)]);
-                for (int f = 0; f < features_; ++f) to[f] += w * d[f * stride.feature];
+        R* rows = d_table + features_ * level.first;
+        d_out += std::int64_t(l) * features_ * stride.feature;
+        with_features([&](auto features) {
+            for (std::int64_t s = 0; s < samples; ++s) {
+                const Corners c = corners(level, points + D * s);
+                R d[max_features];
+                for (int f = 0; f < features; ++f)
+                    d[f] = d_out[s * stride.sample + f * stride.feature];
+                for (int k = 0; k < 1 << D; ++k) {
+                    const R w = c.product(k);
+                    R* to = rows + features * c.row(k);
+                    for (int f = 0; f < features; ++f) to[f] += w * d[f];
+                }
             }
-        }
+        });
     }
 
     /// Adds to d_points (samples, D) of samples [begin, end), for all levels.
@@ -122,7 +147,7 @@ public:
                 const R* d =
                     d_out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
                 for (int k = 0; k < 1 << D; ++k) {
-                    const R* from = table + features_ * (levels_[l].first + c.row[std::size_t(k)]);
+                    const R* from = table + features_ * (levels_[l].first + c.row(k));
                     R along = R(0);
                     for (int f = 0; f < features_; ++f) along += from[f] * d[f * stride.feature];
                     for (std::size_t a = 0; a < D; ++a)
@@ -131,19 +156,18 @@ public:
             }
     }
 
+    static constexpr int max_features = 8;
+
 private:
-    static std::int64_t row(const HashLevel& level, const std::uint32_t* low, int corner) {
-        constexpr std::uint32_t prime[3] = {1u, 2654435761u, 805459861u};
-        const std::int64_t side = level.resolution + 1;
-        std::int64_t dense = 0, scale = 1;
-        std::uint32_t hashed = 0;
-        for (int a = 0; a < D; ++a) {
-            const std::uint32_t i = low[a] + (static_cast<std::uint32_t>(corner) >> a & 1u);
-            dense += scale * i;
-            scale *= side;
-            hashed ^= i * prime[a];
+    /// use(number of features), as a constant where it is a usual one.
+    template <class Use>
+    void with_features(Use&& use) const {
+        switch (features_) {
+            case 1: return use(std::integral_constant<int, 1>{});
+            case 2: return use(std::integral_constant<int, 2>{});
+            case 4: return use(std::integral_constant<int, 4>{});
+            default: return use(features_);
         }
-        return level.dense ? dense : std::int64_t(hashed) & (level.rows - 1);
     }
 
     std::vector<HashLevel> levels_;

@@ -3,10 +3,8 @@
     class TestTextureRecovery(AssignmentTests):
         folder = ASSIGNMENTS / "03_texture_recovery"
 
-Facts of a figure are `{"claim": True}` or `{"claim": (value, low, high)}`. `figures.py` names for
-each figure the mutant that turns at least one of its facts red (RED), and, where it wants to be
-exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact in HELD, with a
-reason, needs none.
+A figure returns facts, `{"claim": Fact(...)}`. Each names the mutant that turns it red, or says why
+none does; or `figures.py` names for each figure a mutant that turns at least one red (RED).
 
 What is read or drawn from an assignment's folder is kept for the tests that follow: nothing writes
 there meanwhile, and one bundle judges many submissions at a grader's desk as well.
@@ -27,7 +25,7 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks import load_check_modules
-from photograd_course.assignment.load import load_beside, load_module
+from photograd_course.assignment.load import load_beside, load_figure_script
 from photograd_course.assignment.manifest import read_manifest
 from photograd_course.build.course_files import build_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
@@ -36,6 +34,7 @@ from photograd_course.build.rules import reading_findings
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
+from photograd_course.viz.handout import Facts
 from photograd_course.viz.style import HANDOUT_DPI, save_figure
 from PIL import Image
 
@@ -46,8 +45,6 @@ SECRET = b"seeds of the hidden checks, in tests"
 PICTURE_BYTES = 120_000
 # Mean difference of two drawings of one figure, in gray levels; 0 here, text moves elsewhere.
 PICTURE_DIFFERENCE = 3.0
-
-Fact = bool | tuple[float, float, float]
 
 
 def names(folder: Path, kind: str) -> list[str]:
@@ -135,11 +132,11 @@ def load_checks_of(folder: Path) -> ModuleType:
 
 @functools.cache
 def load_figures(folder: Path) -> ModuleType:
-    return load_module("figures", (folder / "figures.py").read_text("utf-8"))
+    return load_figure_script(folder)
 
 
 @functools.cache
-def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, dict[str, Fact]]:
+def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, Facts]:
     """A figure, None of a mutant, and its facts, computed from the solution or from a mutant."""
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
     bundle = bundle_of(folder)
@@ -149,23 +146,14 @@ def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, dict[str, 
     return None if mutant else drawn, facts
 
 
-def figure_facts(folder: Path, figure: str, mutant: str | None = None) -> dict[str, Fact]:
+def figure_facts(folder: Path, figure: str, mutant: str | None = None) -> Facts:
     """The facts behind a caption."""
     return draw(folder, figure, mutant)[1]
 
 
-def holds(fact: Fact) -> bool:
-    """Whether a fact is true; NaN is not."""
-    if isinstance(fact, tuple):
-        value, low, high = fact
-        return bool(low <= value <= high)
-    assert isinstance(fact, bool | np.bool_), f"{fact!r} is no fact"
-    return bool(fact)
-
-
-def red(facts: Mapping[str, Fact]) -> dict[str, Fact]:
+def red(facts: Facts) -> Facts:
     """Those that do not hold."""
-    return {claim: fact for claim, fact in facts.items() if not holds(fact)}
+    return {claim: fact for claim, fact in facts.items() if not fact.holds}
 
 
 class AssignmentTests:
@@ -251,14 +239,16 @@ class AssignmentTests:
         assert red(facts) == {}
 
     def test_a_figure_turns_red_under_its_mutant(self, figure: str) -> None:
-        module = load_figures(self.folder)
-        assert red(figure_facts(self.folder, figure, module.RED[figure]))
-        exact: dict[str, str] = getattr(module, "RED_FACTS", {}).get(figure, {})
-        for claim, mutant in exact.items():
-            assert claim in red(figure_facts(self.folder, figure, mutant)), (claim, mutant)
-        if hasattr(module, "RED_FACTS"):
-            held = getattr(module, "HELD", {}).get(figure, {})
-            assert set(exact) | set(held) == set(figure_facts(self.folder, figure))
+        facts = figure_facts(self.folder, figure)
+        named: dict[str, str] = getattr(load_figures(self.folder), "RED", {})
+        if figure in named:
+            assert red(figure_facts(self.folder, figure, named[figure]))
+        else:
+            assert [claim for claim, fact in facts.items() if not fact.red + fact.held] == []
+            assert any(fact.red for fact in facts.values())
+        for claim, fact in facts.items():
+            if fact.red:
+                assert claim in red(figure_facts(self.folder, figure, fact.red)), (claim, fact.red)
 
     def test_a_picture_is_the_one_that_its_script_draws(self, figure: str) -> None:
         path = self.folder / "figures" / f"{figure}.png"

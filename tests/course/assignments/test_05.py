@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
+from photograd_course.assignment.load import load_module
 from PIL import Image
 
 from course.assignments.support import (
@@ -19,7 +20,6 @@ from course.assignments.support import (
     apply_mutant,
     judge,
     load_checks_of,
-    load_module,
     source,
 )
 

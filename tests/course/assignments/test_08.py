@@ -11,16 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
+from photograd_course.assignment.load import load_module
 from PIL import Image
 
-from course.assignments.support import (
-    ASSIGNMENTS,
-    SECRET,
-    AssignmentTests,
-    apply_mutant,
-    judge,
-    load_module,
-)
+from course.assignments.support import ASSIGNMENTS, SECRET, AssignmentTests, apply_mutant, judge
 
 FOLDER = ASSIGNMENTS / "08_volume_rendering"
 PRINTED = 6e-7  # the handout rounds to six decimals

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
+from photograd_course.assignment.load import load_module
 from PIL import Image
 
 from course.assignments.support import (
@@ -20,7 +21,6 @@ from course.assignments.support import (
     apply_mutant,
     judge,
     load_figures,
-    load_module,
     source,
 )
 
@@ -54,7 +54,7 @@ def small_tree(solution):
 
 
 def test_numbers_of_the_warm_up(solution) -> None:
-    gap = load_figures(FOLDER)._gap
+    gap = load_figures(FOLDER).parts.gap
     assert np.exp(-0.5) == pytest.approx(0.606531, abs=PRINTED)
     behind = 0.8 * -np.expm1(-1)
     assert behind == pytest.approx(0.505696, abs=PRINTED)
@@ -152,7 +152,7 @@ def test_the_given_adjoint_agrees_with_differences(solution) -> None:
     rng = np.random.default_rng(2)
     voxels = np.argwhere(rng.random((4, 4, 4)) < 0.4)
     values = rng.uniform(0.3, 1.0, (len(voxels), 4)) * [1, 1, 1, 3]
-    rays = load_figures(FOLDER)._cameras(3, 3)
+    rays = load_figures(FOLDER).parts.cameras(3, 3)
     target = rng.uniform(0, 1, (27, 3))
     samples = solution.march(4, voxels, table_of(solution, voxels), rays)
     assert (samples[2] < 0).any()
@@ -171,9 +171,9 @@ def test_the_given_adjoint_agrees_with_differences(solution) -> None:
 
 def test_pruned_and_grown_by_one_loses_no_voxel_that_a_derivative_asks_for(solution) -> None:
     """What was pruned beside a voxel that stays, and has a derivative worth the name, is back."""
-    figures = load_figures(FOLDER)
-    voxels, values = figures._object(16)
-    samples = solution.march(16, voxels, table_of(solution, voxels), figures._cameras(8, 8))
+    figures = load_figures(FOLDER).parts
+    voxels, values = figures.ball_and_ring(16)
+    samples = solution.march(16, voxels, table_of(solution, voxels), figures.cameras(8, 8))
     target = solution.render(values, samples)
     worn = values * [1, 1, 1, 0.7]
     _, d_values = solution.loss_and_grad(worn, samples, target)
@@ -190,12 +190,12 @@ def test_pruned_and_grown_by_one_loses_no_voxel_that_a_derivative_asks_for(solut
 
 def test_the_diagnoses_are_what_the_mistakes_give(solution) -> None:
     last = load_module("sparse_grids", apply_mutant(FOLDER, "back_to_the_last"))
-    figures = load_figures(FOLDER)
-    voxels, values = figures._object(8)
+    figures = load_figures(FOLDER).parts
+    voxels, values = figures.ball_and_ring(8)
     order = np.random.default_rng(0).permutation(len(voxels))
     for some in (np.arange(len(voxels)), order):
         samples = last.march(
-            8, voxels[some], table_of(solution, voxels[some]), figures._cameras(6, 6)
+            8, voxels[some], table_of(solution, voxels[some]), figures.cameras(6, 6)
         )
         target = np.full((216, 3), 0.5)
         wrong = last.loss_and_grad(values[some], samples, target)[1]

@@ -166,6 +166,14 @@ def test_leaked_shingles(broken: Broken) -> None:
     assert broken.says("leaked shingles") == []
 
 
+def test_the_names_of_annotated_arguments_are_given(broken: Broken) -> None:
+    head = "def twice(x: np.ndarray, gain: float = 2.0, offset: float = 0.0) -> np.ndarray:"
+    broken.change("light.py", "def twice(x: np.ndarray) -> np.ndarray:", head)
+    broken.change("light.py", "return 2.0 * x", "return twice(x, gain, offset) if gain else x")
+    broken.add("adapters.py", "def f(twice, x, gain, offset):\n    return twice(x, gain, offset)\n")
+    assert broken.says("leaked shingles") == []
+
+
 def test_comments_and_docstrings_are_no_shingles() -> None:
     text = 'def f(a):\n    """a b c d e f g"""\n    # a b c d e f g\n    return a  # b c d\n'
     words = {word for each in shingles_of(text) for word in each}

@@ -1,7 +1,7 @@
 """Task 01.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..task_1 import DIFFERENCE
 
@@ -12,11 +12,10 @@ def cubics(t, n):
     return lambda x: float(np.sum(a * x**3 - x**2)), t.rng.uniform(1.0, 2.0, n), 0.1
 
 
-@check(
+@hidden_check(
     "01.1.cubic",
     points=4,
     calls=("numeric_derivative",),
-    visibility="hidden",
     tolerance=DIFFERENCE,
     hint="For a x^3 the result is 3 a x^2 + a eps^2 exactly: Eq. (4) has no further term.",
     battery=[Subject("numeric_derivative", cubics, lambda n: Array((n,)))],

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, hidden_check
 
 from ..common import EXACT, on_points, rotated_bowl, walk
 from .common import FAR, bowls
@@ -18,11 +18,10 @@ def left_domain(t, n):
     return *on_points(2, f, lambda x: 1.0 - 1.0 / x), t.rng.uniform(1.15, 1.2, 2), 12.0, n
 
 
-@check(
+@hidden_check(
     "01.3.contraction",
     points=4,
     calls=("gd_nd",),
-    visibility="hidden",
     tolerance=Tolerance(
         1e-6,
         "over the last 20 steps the factor is right to 4e-16, so 2 % are not needed; "

@@ -1,16 +1,15 @@
 """Task 01.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, Tolerance, check
+from photograd_course.grading import Array, Subject, Tolerance, hidden_check
 
 from .common import FAR, bowls
 
 
-@check(
+@hidden_check(
     "01.4.roots",
     points=5,
     calls=("momentum",),
-    visibility="hidden",
     tolerance=Tolerance(1e-11, "right answers differ by 4e-15 at most, wrong ones by 0.2 or more"),
     hint="The gradient is taken at the point, not where the velocity would lead.",
     battery=[

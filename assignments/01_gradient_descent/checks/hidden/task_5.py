@@ -1,18 +1,17 @@
 """Task 01.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_5 import scripted
 from .common import FAR, bowls
 
 
-@check(
+@hidden_check(
     "01.5.sums",
     points=6,
     calls=("adam",),
-    visibility="hidden",
     tolerance=EXACT,
     hint="beta1, beta2 and eps are arguments; their defaults are only defaults.",
     battery=[

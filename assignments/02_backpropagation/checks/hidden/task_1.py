@@ -1,7 +1,7 @@
 """Task 02.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, gates_spec
 
@@ -11,11 +11,10 @@ def multiplied(t, n):
     return "mul", *t.rng.normal(0.0, 3.0, (2, n))
 
 
-@check(
+@hidden_check(
     "02.1.many",
     points=3,
     calls=("Value.__add__", "Value.__mul__"),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes, to rounding, at unseen places",
     battery=[

@@ -1,16 +1,15 @@
 """Task 02.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import hidden_check
 
 from ..common import EXACT, gates_spec
 
 
-@check(
+@hidden_check(
     "02.2.many",
     points=2,
     calls=("Value.maximum",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen places",
 )

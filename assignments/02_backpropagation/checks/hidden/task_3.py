@@ -1,16 +1,15 @@
 """Task 02.3, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import check
+from photograd_course.grading import hidden_check
 
 from ..common import EXACT, gates_spec
 
 
-@check(
+@hidden_check(
     "02.3.many",
     points=3,
     calls=("Value.exp", "Value.log", "Value.__pow__"),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes, to rounding, at unseen places",
 )

@@ -1,6 +1,6 @@
 """Task 02.4, hidden checks."""
 
-from photograd_course.grading import check
+from photograd_course.grading import hidden_check
 
 from ..task_4 import require_order, require_work
 
@@ -14,7 +14,7 @@ def ladder(rungs):
     return edges
 
 
-@check("02.4.work", points=4, calls=("topo_order",), visibility="hidden")
+@hidden_check("02.4.work", points=4, calls=("topo_order",))
 def each_value_is_visited_once(t):
     """A ladder of diamonds, with 4096 paths through 37 values, costs what 37 values cost."""
     require_order(t, ladder(4), 12)

@@ -1,7 +1,7 @@
 """Task 02.6, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Subject, Tolerance, check
+from photograd_course.grading import Subject, Tolerance, hidden_check
 
 from ..common import EXACT, STEP
 from ..task_6 import VERDICT, smooth
@@ -17,11 +17,10 @@ def checked_place(t, n):
 SMALL = 1e-6  # the error of a gradient that is accepted
 
 
-@check(
+@hidden_check(
     "02.6.scale",
     points=1,
     calls=("grad_check",),
-    visibility="hidden",
     sole="the steps themselves, and gradients of 1e-9",
     battery=[
         Subject(

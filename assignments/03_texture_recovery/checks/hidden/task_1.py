@@ -1,16 +1,15 @@
 """Task 03.1, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from .common import sampled
 
 
-@check(
+@hidden_check(
     "03.1.hidden",
     points=3,
     calls=("bilinear_sample",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen points",
     battery=[Subject("bilinear_sample", sampled, lambda n: Array((n, 2)), rows=(1,))],

@@ -1,16 +1,15 @@
 """Task 03.3, hidden checks."""
 
-from photograd_course.grading import Array, Items, Number, Subject, check
+from photograd_course.grading import Array, Items, Number, Subject, hidden_check
 
 from ..common import EXACT
 from .common import measured
 
 
-@check(
+@hidden_check(
     "03.3.hidden",
     points=4,
     calls=("loss_and_grad",),
-    visibility="hidden",
     needs=("bilinear_sample", "bilinear_sample_adjoint"),
     tolerance=EXACT,
     sole="the same mistakes at unseen values",

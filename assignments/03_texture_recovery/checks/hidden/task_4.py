@@ -1,16 +1,15 @@
 """Task 03.4, hidden checks."""
 
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, hidden_check
 
 from ..common import CHAINED
 from .common import sampled
 
 
-@check(
+@hidden_check(
     "03.4.hidden",
     points=3,
     calls=("largest_curvature",),
-    visibility="hidden",
     needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
     tolerance=CHAINED,
     sole="the same mistakes at unseen points",

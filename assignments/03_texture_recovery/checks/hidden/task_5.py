@@ -1,19 +1,18 @@
 """Task 03.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 
 from ..common import CHAINED
 from ..task_5 import EARLIER, recover
 from .common import measured
 
 
-@check(
+@hidden_check(
     "03.5.recovers",
     points=4,
     calls=("recover_texture",),
     needs=EARLIER,
-    visibility="hidden",
     seconds=20.0,
     sole="the whole: an unseen texture, recovered from samples",
     battery=[

@@ -1,6 +1,6 @@
 """Task 03.6, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT
 from ..task_6 import mips, pyramid
@@ -16,11 +16,10 @@ def tiled(t, n):
     return (t.rng.uniform(-1.0, 1.0, tile(n)),)
 
 
-@check(
+@hidden_check(
     "03.6.hidden",
     points=1,
     calls=("build_mips",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes on textures not known",
     battery=[Subject("build_mips", tiled, lambda n: pyramid(tile(n))[1], sizes=(0, 1, 2, 7))],

@@ -1,7 +1,7 @@
 """Task 04.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_1 import room
@@ -13,11 +13,10 @@ def some_model(t, n):
     return lambda wo, wi: np.exp(wi @ a * wo[:, 2:]) * b + wo @ a, t.rng.uniform(0.1, 1.0, n)
 
 
-@check(
+@hidden_check(
     "04.1.hidden",
     points=2,
     calls=("furnace",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes with unseen models",
     battery=[Subject("furnace", some_model, lambda n: Array((n, 2)), rows=(1,))],

@@ -1,18 +1,17 @@
 """Task 04.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import upper_directions
 
 from ..common import SHARP, lobes
 from .common import pairs
 
 
-@check(
+@hidden_check(
     "04.2.hidden",
     points=3,
     calls=("ggx_lobe",),
-    visibility="hidden",
     tolerance=SHARP,
     sole="the same mistakes at unknown directions, and on polished surfaces",
     battery=[Subject("ggx_lobe", pairs, lambda n: Array((n,)), rows=(0, 1, 2))],

@@ -1,18 +1,17 @@
 """Task 04.3, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import upper_directions
 
 from ..common import SHARP
 from .common import pairs
 
 
-@check(
+@hidden_check(
     "04.3.hidden",
     points=2,
     calls=("ggx_pdf",),
     needs=("ggx_lobe",),
-    visibility="hidden",
     tolerance=SHARP,
     sole="the same mistakes at unseen directions",
     battery=[Subject("ggx_pdf", pairs, lambda n: Array((n,)), rows=(0, 1, 2))],

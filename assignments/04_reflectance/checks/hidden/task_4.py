@@ -1,18 +1,17 @@
 """Task 04.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import upper_directions
 
 from ..common import EXACT, turned, viewer
 from ..task_4 import cells, chi_square, drawn, twice
 
 
-@check(
+@hidden_check(
     "04.4.hidden",
     points=3,
     calls=("sample_ggx",),
-    visibility="hidden",
     sole="the right density, whatever that of the submission is",
     battery=[
         Subject(

@@ -1,19 +1,18 @@
 """Task 04.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import upper_directions
 
 from ..common import EXACT, material, shaded
 from .common import painted
 
 
-@check(
+@hidden_check(
     "04.5.hidden",
     points=3,
     calls=("gltf",),
     needs=("ggx_lobe",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes with unseen materials",
     battery=[Subject("gltf", painted, lambda n: Array((n, 3)), rows=range(5))],

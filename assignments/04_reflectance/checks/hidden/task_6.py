@@ -1,6 +1,6 @@
 """Task 04.6, hidden checks."""
 
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT, material
@@ -8,12 +8,11 @@ from ..task_6 import NAMES, near_mirrors, slopes
 from .common import painted
 
 
-@check(
+@hidden_check(
     "04.6.hidden",
     points=4,
     calls=("gltf_backward",),
     needs=("ggx_lobe", "gltf"),
-    visibility="hidden",
     tolerance=EXACT,
     sole="eleven digits, which differences do not have",
     battery=[

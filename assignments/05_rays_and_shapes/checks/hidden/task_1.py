@@ -1,7 +1,7 @@
 """Task 05.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT, distances, lengths, same_hits, sphere
@@ -13,11 +13,10 @@ def struck(t, n):
     return t.rng.uniform(-6, 6, (n, 3)), unit_vectors(t.rng, n) * lengths(t, n), *sphere(t)
 
 
-@check(
+@hidden_check(
     "05.1.hidden",
     points=2,
     calls=("hit_sphere",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen spheres",
     battery=[Subject("hit_sphere", struck, distances, rows=(0, 1))],

@@ -1,7 +1,7 @@
 """Task 05.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 
 from ..common import EXACT, distances, same_hits
 from ..task_2 import aimed, inner_parts, outer_parts, triangles
@@ -13,11 +13,10 @@ def crossed(t, n):
     return aimed(t, n, parts, t.rng.uniform(-2, 5, n))
 
 
-@check(
+@hidden_check(
     "05.2.hidden",
     points=2,
     calls=("hit_triangle",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen triangles",
     battery=[

@@ -1,17 +1,16 @@
 """Task 05.3, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_3 import arrivals, refracted
 
 
-@check(
+@hidden_check(
     "05.3.hidden",
     points=2,
     calls=("refract",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen directions",
     battery=[

@@ -1,7 +1,7 @@
 """Task 05.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import distances, same_hits, sphere
@@ -14,11 +14,10 @@ def approached(t, n):
     return Surface(ball(center, radius)), *onto_ball(t, n, center, radius)[:2], 50.0, 400
 
 
-@check(
+@hidden_check(
     "05.4.hidden",
     points=2,
     calls=("march_sdf",),
-    visibility="hidden",
     tolerance=MARCHED,
     sole="the same mistakes at unseen scenes",
     battery=[

@@ -1,7 +1,7 @@
 """Task 05.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT, WHOLE, Scene, built
@@ -14,11 +14,10 @@ def stacked(t, n):
     return low, low + t.rng.uniform(0.2, 1.0, (n, 3))
 
 
-@check(
+@hidden_check(
     "05.5.hidden",
     points=2,
     calls=("build_bvh",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen primitives; growth",
     battery=[

@@ -1,6 +1,6 @@
 """Task 05.6, hidden checks."""
 
-from photograd_course.grading import Integer, Items, Number, Subject, check
+from photograd_course.grading import Integer, Items, Number, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_6 import first_met, rectangles, right_answer
@@ -15,12 +15,11 @@ def searched(t, n):
     return *tree, lambda k: scene.box(int(k)), scene.meet, origin, scene.direction
 
 
-@check(
+@hidden_check(
     "05.6.hidden",
     points=2,
     calls=("traverse",),
     needs=("build_bvh",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes in unseen scenes",
     battery=[

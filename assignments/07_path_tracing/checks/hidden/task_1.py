@@ -1,7 +1,7 @@
 """Task 07.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT, ways
 from ..task_1 import density
@@ -15,11 +15,10 @@ def pointed(t, n):
     return scene, hit["thing"], directions, hit["t"]
 
 
-@check(
+@hidden_check(
     "07.1.hidden",
     points=2,
     calls=("light_pdf",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="unseen rooms",
     battery=[Subject("light_pdf", pointed, lambda n: Array((n,)), rows=(1, 2, 3))],

@@ -1,17 +1,16 @@
 """Task 07.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_2 import weights_of
 
 
-@check(
+@hidden_check(
     "07.2.hidden",
     points=1,
     calls=("mis_weight",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="unseen densities",
     battery=[

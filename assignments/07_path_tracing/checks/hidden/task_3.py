@@ -1,17 +1,16 @@
 """Task 07.3, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT, TASK_3, direct
 from .common import estimated, looked_at, mixed_room
 
 
-@check(
+@hidden_check(
     "07.3.hidden",
     points=6,
     calls=("direct_light",),
     needs=TASK_3,
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same random numbers, two lights, shadows, and another proposal",
     battery=[Subject("direct_light", estimated, lambda n: Array((n, 3)), rows=(1, 2, 3))],

@@ -1,16 +1,15 @@
 """Task 07.4, hidden checks."""
 
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_4 import played
 
 
-@check(
+@hidden_check(
     "07.4.hidden",
     points=1,
     calls=("roulette",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="unseen paths",
     battery=[

@@ -1,19 +1,18 @@
 """Task 07.5, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT, cube, require_mean, scene_of, ways
 from ..task_5 import TASK_5, rays_inside, traced
 from .common import mixed_room
 
 
-@check(
+@hidden_check(
     "07.5.hidden",
     points=3,
     calls=("trace_paths",),
     needs=TASK_5,
-    visibility="hidden",
     sole="glossy primitives, shadows, and paths that leave the room",
     battery=[
         Subject(

@@ -1,15 +1,14 @@
 """Task 08.1, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, random_rays, seen
 
 
-@check(
+@hidden_check(
     "08.1.hidden",
     points=2,
     calls=("composite",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[

@@ -1,6 +1,6 @@
 """Task 08.3, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, random_box
 from ..task_3 import spans
@@ -11,11 +11,10 @@ def cast(t, n):
     return *random_box(t), t.rng.uniform(-2.0, 2.0, (n, 3)), t.rng.normal(size=(n, 3))
 
 
-@check(
+@hidden_check(
     "08.3.hidden",
     points=2,
     calls=("ray_box",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen rays",
     battery=[Subject("ray_box", cast, spans, rows=(2, 3))],

@@ -1,16 +1,15 @@
 """Task 08.4, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from .common import placed
 
 
-@check(
+@hidden_check(
     "08.4.hidden",
     points=2,
     calls=("trilinear",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen points",
     battery=[Subject("trilinear", placed, lambda n: Array((n, 2)), rows=(1,))],

@@ -1,17 +1,16 @@
 """Task 08.5, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT
 from .common import placed
 
 
-@check(
+@hidden_check(
     "08.5.hidden",
     points=2,
     calls=("trilinear_adjoint",),
-    visibility="hidden",
     tolerance=EXACT,
     needs=("trilinear",),
     sole="the same mistakes at unseen points",

@@ -1,6 +1,6 @@
 """Task 08.6, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..task_6 import EARLIER, random_view, slopes_of_view
@@ -13,12 +13,11 @@ def pictured(t, n):
     return *random_view(t, n, (4, 3, 5)), 5, background, d_pixel
 
 
-@check(
+@hidden_check(
     "08.6.hidden",
     points=3,
     calls=("render_adjoint",),
     needs=EARLIER,
-    visibility="hidden",
     tolerance=SUMS,
     sole="the same mistakes in unseen views",
     battery=[Subject("render_adjoint", pictured, lambda _: slopes_of_view((4, 3, 5)))],

@@ -1,17 +1,16 @@
 """Task 09.1, hidden checks."""
 
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_1 import DECIBELS
 from .common import alike
 
 
-@check(
+@hidden_check(
     "09.1.hidden",
     points=1,
     calls=("psnr",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[Subject("psnr", alike, lambda _: Number(), tolerance=DECIBELS)],

@@ -1,17 +1,16 @@
 """Task 09.2, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 from photograd_course.grading.generators import random_rotation
 
 from ..common import EXACT, batch, random_views
 from ..task_2 import unit
 
 
-@check(
+@hidden_check(
     "09.2.hidden",
     points=3,
     calls=("ray_batch",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen cameras",
     battery=[

@@ -1,16 +1,15 @@
 """Task 09.3, hidden checks."""
 
-from photograd_course.grading import Subject, check
+from photograd_course.grading import Subject, hidden_check
 
 from ..common import EXACT, loss_and_slope
 from .common import alike
 
 
-@check(
+@hidden_check(
     "09.3.hidden",
     points=2,
     calls=("mse_and_cotangent",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[Subject("mse_and_cotangent", alike, lambda n: loss_and_slope((n, 3)))],

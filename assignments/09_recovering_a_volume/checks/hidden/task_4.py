@@ -1,6 +1,6 @@
 """Task 09.4, hidden checks."""
 
-from photograd_course.grading import Number, Subject, check
+from photograd_course.grading import Number, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import EXACT, loss_and_slope, rough
@@ -10,12 +10,11 @@ from ..common import EXACT, loss_and_slope, rough
 TV_COST = 2500.0
 
 
-@check(
+@hidden_check(
     "09.4.hidden",
     points=4,
     calls=("tv_loss_adjoint",),
     needs=("psnr",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen volumes",
     battery=[

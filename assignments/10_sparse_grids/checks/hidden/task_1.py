@@ -1,6 +1,6 @@
 """Task 10.1, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL, blocks
 from ..task_1 import cells_of, octree
@@ -11,11 +11,10 @@ def halved(t, n):
     return (blocks(t, 1 << n.bit_length() - 1, 0.9),)
 
 
-@check(
+@hidden_check(
     "10.1.hidden",
     points=2,
     calls=("octree_from_dense",),
-    visibility="hidden",
     sole="the same mistakes in unseen cubes",
     battery=[
         Subject(

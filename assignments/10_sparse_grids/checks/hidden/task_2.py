@@ -1,7 +1,7 @@
 """Task 10.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL, blocks
 from ..task_2 import counting_leaf, rays_within, same_samples, skipped
@@ -12,11 +12,10 @@ def skipping(t, n):
     return counting_leaf(blocks(t, 8, 0.9), []), *rays_within(t, 8, n, 20), 20
 
 
-@check(
+@hidden_check(
     "10.2.hidden",
     points=6,
     calls=("skip_empty",),
-    visibility="hidden",
     sole="the same mistakes on unseen rays",
     battery=[
         Subject(

@@ -1,7 +1,7 @@
 """Task 10.3, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL
 from ..task_3 import crowd, free_table, insert, require_sound, some_voxels
@@ -12,11 +12,10 @@ def inserted(t, n):
     return free_table(16), some_voxels(t, n), t.rng.permutation(n)
 
 
-@check(
+@hidden_check(
     "10.3.hidden",
     points=1,
     calls=("voxel_hash_insert",),
-    visibility="hidden",
     sole="the same mistakes at unseen voxels",
     battery=[
         Subject(

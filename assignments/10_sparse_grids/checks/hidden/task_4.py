@@ -1,6 +1,6 @@
 """Task 10.4, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..task_4 import EXACT, back, some_samples
 
@@ -10,11 +10,10 @@ def gathered(t, n):
     return 5, *some_samples(t, 5, n), t.rng.uniform(-1, 1, (n, 3))
 
 
-@check(
+@hidden_check(
     "10.4.hidden",
     points=3,
     calls=("sample_sparse_adjoint",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen samples",
     battery=[Subject("sample_sparse_adjoint", gathered, lambda _: Array((5, 3)))],

@@ -1,6 +1,6 @@
 """Task 10.5, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import FAITHFUL, same_voxels
 from ..task_5 import pruned, some_shares, voxels_in
@@ -12,11 +12,10 @@ def shared(t, n):
     return 4, voxels_in(t, 4, n), *some_shares(t, most), 0.5, 1
 
 
-@check(
+@hidden_check(
     "10.5.hidden",
     points=2,
     calls=("prune_and_dilate",),
-    visibility="hidden",
     sole="the same mistakes at unseen voxels",
     battery=[
         Subject("prune_and_dilate", shared, lambda _: Array((None, 3), "i8"), tolerance=FAITHFUL)

@@ -1,17 +1,16 @@
 """Task 11.1, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT, basis
 
 
-@check(
+@hidden_check(
     "11.1.hidden",
     points=4,
     calls=("sh_basis",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen directions",
     battery=[

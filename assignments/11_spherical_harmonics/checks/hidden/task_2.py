@@ -1,7 +1,7 @@
 """Task 11.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT
@@ -12,12 +12,11 @@ def weighted(t, n):
     return unit_vectors(t.rng, n), t.rng.uniform(0.1, 1.0, n), t.rng.uniform(-1.0, 1.0, (n, 2)), 3
 
 
-@check(
+@hidden_check(
     "11.2.hidden",
     points=3,
     calls=("sh_project",),
     needs=("sh_basis",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[Subject("sh_project", weighted, lambda _: Array((16, 2)))],

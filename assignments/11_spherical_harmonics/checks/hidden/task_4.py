@@ -1,18 +1,17 @@
 """Task 11.4, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import random_rotation
 
 from ..common import EXACT
 from ..task_4 import rotated
 
 
-@check(
+@hidden_check(
     "11.4.hidden",
     points=3,
     calls=("sh_rotate",),
     needs=("sh_basis", "sh_project"),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen rotations",
     battery=[

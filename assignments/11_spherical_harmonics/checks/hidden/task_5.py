@@ -1,6 +1,6 @@
 """Task 11.5, hidden checks."""
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
 from ..common import EXACT
@@ -16,12 +16,11 @@ def among(t, n):
     )
 
 
-@check(
+@hidden_check(
     "11.5.hidden",
     points=2,
     calls=("probe_irradiance",),
     needs=("sh_basis",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen probes",
     battery=[Subject("probe_irradiance", among, lambda n: Array((n, 2)), rows=(1, 2))],

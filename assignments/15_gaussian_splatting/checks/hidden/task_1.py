@@ -1,6 +1,6 @@
 """Task 15.1, hidden checks."""
 
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT, spread
@@ -13,12 +13,11 @@ def turned_shapes(t, n):
     return 3 * t.rng.normal(size=(n, 4)), t.rng.uniform(-2.0, 1.0, (n, 3))
 
 
-@check(
+@hidden_check(
     "15.1.hidden",
     points=3,
     calls=("covariance",),
     adjoints=("covariance",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[

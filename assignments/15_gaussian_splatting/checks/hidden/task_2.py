@@ -1,7 +1,7 @@
 """Task 15.2, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT, ahead, in_world, some_camera
@@ -19,12 +19,11 @@ def pulled(t, n):
     return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
 
 
-@check(
+@hidden_check(
     "15.2.hidden",
     points=3,
     calls=("project",),
     adjoints=("project",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[

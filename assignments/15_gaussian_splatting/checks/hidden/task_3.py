@@ -1,6 +1,6 @@
 """Task 15.3, hidden checks."""
 
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT
@@ -8,12 +8,11 @@ from ..task_3 import taken, taken_back, wide_splats
 from .common import derivatives, values
 
 
-@check(
+@hidden_check(
     "15.3.hidden",
     points=2,
     calls=("screen_alpha",),
     adjoints=("screen_alpha",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[

@@ -1,7 +1,7 @@
 """Task 15.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Subject, check
+from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent
 
 from ..common import EXACT
@@ -9,12 +9,11 @@ from ..task_4 import blended, blended_back, layers
 from .common import derivatives, values
 
 
-@check(
+@hidden_check(
     "15.4.hidden",
     points=3,
     calls=("composite",),
     adjoints=("composite",),
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[

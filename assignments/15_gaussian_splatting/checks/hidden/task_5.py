@@ -1,6 +1,6 @@
 """Task 15.5, hidden checks."""
 
-from photograd_course.grading import Array, Record, Subject, check
+from photograd_course.grading import Array, Record, Subject, hidden_check
 from photograd_course.grading.adjoint_gate import random_cotangent, require_cheap
 
 from ..common import EARLIER, EXACT, ahead, in_world, some_camera, some_scene
@@ -15,12 +15,11 @@ def pictured(t, n):
     return some_scene(t.rng, camera, 5), camera, pixels, background
 
 
-@check(
+@hidden_check(
     "15.5.hidden",
     points=2,
     calls=("render",),
     needs=EARLIER,
-    visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unknown scenes, and the cost of the backward pass",
     battery=[

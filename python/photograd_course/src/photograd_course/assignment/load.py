@@ -9,6 +9,7 @@ import itertools
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.machinery import ModuleSpec
+from pathlib import Path
 from types import CodeType, ModuleType
 
 from ..worker.modules import SourceFinder
@@ -34,6 +35,13 @@ def load_beside(name: str, text: str, brought: Mapping[str, str]) -> ModuleType:
         return load_module(name, text)
     finally:
         finder.remove()
+
+
+def load_figure_script(folder: Path) -> ModuleType:
+    """An assignment's `figures.py`, which may import from `figure_parts.py` beside it."""
+    parts = folder / "figure_parts.py"
+    beside = {parts.stem: parts.read_text("utf-8")} if parts.exists() else {}
+    return load_beside("figures", (folder / "figures.py").read_text("utf-8"), beside)
 
 
 def load_package(name: str, texts: Mapping[str, str]) -> dict[str, ModuleType]:

@@ -75,16 +75,15 @@ HIDDEN_TASK = '''\
 
 from __future__ import annotations
 
-from photograd_course.grading import Array, Subject, check
+from photograd_course.grading import Array, Subject, hidden_check
 
 from ..task_1 import ROUNDING
 
 
-@check(
+@hidden_check(
     "NN.1.random",
     points=35,
     calls=("twice",),
-    visibility="hidden",
     tolerance=ROUNDING,
     sole="random points, so that the answers to the public check cannot be copied",
     battery=[

@@ -6,7 +6,7 @@ An assignment's `checks/` needs only what this module exports.
 from __future__ import annotations
 
 from .battery import Subject
-from .check import Check, check, checks_for
+from .check import Check, check, checks_for, hidden_check
 from .cost import agree
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .outcome import Outcome, Status
@@ -35,4 +35,5 @@ __all__ = [
     "asks",
     "check",
     "checks_for",
+    "hidden_check",
 ]

@@ -119,6 +119,11 @@ def check(
     return make
 
 
+def hidden_check(id: str, **arguments: Any) -> Callable[[Body], Check]:
+    """`check` with the visibility "hidden"."""
+    return check(id, visibility="hidden", **arguments)
+
+
 def checks_for(**shared: Any) -> Callable[..., Callable[[Body], Check]]:
     """`check` for a file whose checks have some arguments in common; each can have another.
 

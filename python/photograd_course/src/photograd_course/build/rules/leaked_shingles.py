@@ -5,6 +5,7 @@ What counts as telling is defined in `leak_words`.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator
 
 from ..assignment_build import AssignmentBuild
@@ -39,8 +40,18 @@ def telling_shingles(build: AssignmentBuild) -> set[Shingle]:
     """Those of the solution that are evidence."""
     handout = build.visible.get("kit/README.md", b"").decode("utf-8")
     given = shingles_of(build.starter) | shingles_of(fenced_code(handout))
+    given |= shingles_of(_headers(build.starter))
     parts = {each for part in build.parts for each in shingles_of(_dedented(part.text))}
     return {each for each in parts - given - well_known_shingles() if says_something(each)}
+
+
+def _headers(text: str) -> str:
+    """The functions of a text with the names of their arguments, a line each: not annotated."""
+    functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
+    return "".join(
+        f"def {each.name}({', '.join(arg.arg for arg in each.args.args)}): ...\n"
+        for each in functions
+    )
 
 
 def _dedented(text: str) -> str:

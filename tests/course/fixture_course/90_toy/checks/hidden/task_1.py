@@ -1,15 +1,14 @@
 """Task 90.1, hidden checks."""
 
-from photograd_course.grading import Number, check
+from photograd_course.grading import Number, hidden_check
 
 from ..common import ROUNDING
 
 
-@check(
+@hidden_check(
     "90.1.hidden",
     points=3,
     calls=("weighted_sum",),
-    visibility="hidden",
     tolerance=ROUNDING,
     sole="the same mistakes, at points that are not known beforehand",
 )

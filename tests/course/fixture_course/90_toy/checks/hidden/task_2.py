@@ -1,16 +1,15 @@
 """Task 90.2, hidden checks."""
 
-from photograd_course.grading import Array, Items, Number, check
+from photograd_course.grading import Array, Items, Number, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import ROUNDING
 
 
-@check(
+@hidden_check(
     "90.2.cost",
     points=3,
     calls=("weighted_sum_backward",),
-    visibility="hidden",
     needs=("weighted_sum",),
     tolerance=ROUNDING,
     seconds=5.0,

@@ -1,18 +1,13 @@
 """Task 91.2, hidden checks."""
 
-from photograd_course.grading import Array, Items, Number, check
+from photograd_course.grading import Array, Items, Number, hidden_check
 from photograd_course.grading.adjoint_gate import require_cheap
 
 from ..common import ROUNDING
 
 
-@check(
-    "91.2.cost",
-    points=3,
-    calls=("weighted_sum_backward",),
-    visibility="hidden",
-    tolerance=ROUNDING,
-    seconds=3.0,
+@hidden_check(
+    "91.2.cost", points=3, calls=("weighted_sum_backward",), tolerance=ROUNDING, seconds=3.0
 )
 def the_derivative_is_cheap(t):
     """With 4,000 parameters the derivative is right, and costs a few forward calls."""

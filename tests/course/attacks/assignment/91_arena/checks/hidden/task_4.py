@@ -1,12 +1,12 @@
 """Task 91.4, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import Number, check
+from photograd_course.grading import Number, hidden_check
 
 from ..common import ROUNDING
 
 
-@check("91.4.tail", points=3, calls=("brightness",), visibility="hidden", tolerance=ROUNDING)
+@hidden_check("91.4.tail", points=3, calls=("brightness",), tolerance=ROUNDING)
 def the_mean_keeps_its_fireflies(t):
     """With a heavy tail, too, the mean is that of the samples drawn."""
     drawn = []

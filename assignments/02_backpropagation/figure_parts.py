@@ -1,0 +1,120 @@
+"""What the figures of assignment 02 draw: scenes, measurements, pieces of pictures."""
+
+import math
+
+from matplotlib.patches import FancyArrowPatch
+from photograd_course.viz.style import BLUE, FRAME, INK, ORANGE, place_axes
+from photograd_course.viz.style import RED as DARK_RED
+
+TEXT = 9.0  # points: 11 pixels where the figure is shown 600 pixels wide
+SMALL = 8.5
+
+
+def graph_axes(figure, left, top, width, height):
+    """Axes without frame; one unit is one inch, y downwards."""
+    axes = place_axes(figure, left, top, width, height)
+    axes.set(xlim=(0, width), ylim=(height, 0))
+    axes.axis("off")
+    return axes
+
+
+def circle(axes, at, label, value="", gradient=""):
+    """A node: its label inside, its value above and its gradient below."""
+    box = {"boxstyle": "circle,pad=0.35", "fc": "white", "ec": INK, "lw": 1.4}
+    axes.text(*at, label, ha="center", va="center", fontsize=TEXT + 1.5, zorder=4, bbox=box)
+    bold = {"ha": "center", "fontsize": TEXT, "fontweight": "bold"}
+    axes.text(at[0], at[1] - 0.27, value, va="bottom", color=BLUE, **bold)
+    axes.text(at[0], at[1] + 0.27, gradient, va="top", color=ORANGE, **bold)
+
+
+def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
+    """An arrow from an input to its user, with a label beside it."""
+    axes.add_patch(
+        FancyArrowPatch(
+            start,
+            end,
+            connectionstyle=f"arc3,rad={bend}",
+            arrowstyle="-|>",
+            mutation_scale=10,
+            shrinkA=13,
+            shrinkB=13,
+            lw=1.1,
+            color=color,
+            zorder=1,
+        )
+    )
+    if label:
+        x = start[0] + where * (end[0] - start[0])
+        # The middle of an arc lies half its bend to the side of the chord (y points down).
+        y = start[1] + where * (end[1] - start[1]) - bend * 0.5 * (end[0] - start[0]) + lift
+        axes.text(
+            x,
+            y,
+            label,
+            ha="center",
+            va="center",
+            fontsize=SMALL,
+            color=color,
+            bbox={"fc": "white", "ec": "none", "pad": 0.6},
+            zorder=2,
+        )
+
+
+def key(axes, x, y):
+    """Which number is which."""
+    axes.text(x, y, "value", color=BLUE, fontsize=TEXT, fontweight="bold")
+    axes.text(x, y + 0.22, "gradient", color=ORANGE, fontsize=TEXT, fontweight="bold")
+    axes.text(x, y + 0.44, "× slope", color=FRAME, fontsize=TEXT)
+
+
+def slopes_of(user, source):
+    """Local derivatives stored by `user` for each of its uses of `source`."""
+    return [slope for node, slope in user.inputs if node is source]
+
+
+def first_slope(user, source):
+    found = slopes_of(user, source)
+    return found[0] if found else math.nan
+
+
+def recorded_uses(module, root):
+    """The number of contributions that `backward` adds, and the number of values."""
+    order = module.topo_order(root)
+    return sum(len(node.inputs) for node in order), len(order)
+
+
+def levels(root):
+    """Level by level from the root: the order that fails, root last."""
+    order, seen = [root], {root}
+    for node in order:
+        for source, _ in node.inputs:
+            if source not in seen:
+                seen.add(source)
+                order.append(source)
+    return order[::-1]
+
+
+def draw_order(axes, name, uses, ranks, gradients):
+    at = {"x": (0.4, 1.55), "a": (1.02, 1.55), "c": (1.65, 0.9), "b": (2.27, 0.9), "f": (2.9, 1.55)}
+    made = {"x": "x = 2", "a": "a = x²", "c": "c = a²", "b": "b = c²", "f": "b + a"}
+    rank = ranks[name]
+    axes.text(1.65, 0.2, name, ha="center", fontsize=TEXT + 1)
+    for start, end in uses:
+        late = rank[end] > rank[start]
+        arrow(axes, at[start], at[end], color=DARK_RED if late else FRAME)
+        if late:
+            axes.text(1.16, 1.12, "late", ha="right", fontsize=SMALL, color=DARK_RED)
+    for key_, place in at.items():
+        circle(axes, place, f"{rank[key_]}", "", f"{gradients[name][key_]:g}")
+        axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
+
+
+def blurred(texels):
+    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
+    rows = []
+    for row in texels:
+        padded = [row[0], *row, row[-1]]
+        rows.append(
+            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
+        )
+    return rows

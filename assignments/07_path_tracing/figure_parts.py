@@ -1,0 +1,118 @@
+"""What the figures of assignment 07 draw: scenes, measurements, pieces of pictures."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+import numpy as np
+from photograd_course.viz.handout import Array
+
+UP = np.array([0.0, 1.0, 0.0])
+
+
+def irradiance(corners: Array) -> float:
+    """Lambert's formula, of a surface at the origin that faces up."""
+    d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
+    total = np.zeros(3)
+    for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
+        c = np.cross(a, b)
+        total += np.arctan2(np.linalg.norm(c), a @ b) * c / np.linalg.norm(c)
+    return float(abs(total @ UP) / 2)
+
+
+def alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
+    """Direct light by one strategy alone, with weight 1: light sampling, BSDF sampling."""
+    found = []
+    for by_lamp in (True, False):
+        if by_lamp:
+            wi, _, lamp = module.sample_light(scene, hit["points"], u_light)
+        else:
+            wi = module.sample_brdf(scene, hit, u_surface)
+        there = module.see(scene, hit["points"], wi)
+        if by_lamp:
+            p = module.light_pdf(scene, there["thing"], wi, there["t"])
+            p = np.where(there["thing"] == lamp, p, 0.0)
+        else:
+            p = module.brdf_pdf(scene, hit, wi)
+        c = np.maximum(module.dot(wi, hit["normals"]), 0) / np.where(p > 0, p, np.inf)
+        found.append(module.brdf(scene, hit, wi) * module.emitted(scene, there) * c[:, None])
+    return found
+
+
+def furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
+    """(scene, origins, directions): a closed cube that emits, and rays inside."""
+    faces = (
+        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
+        ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
+        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)),
+        ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
+        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)),
+        ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
+    )
+    scene = module.assemble([module.rectangle(*f, emission=1.0, base_color=albedo) for f in faces])
+    d = rng.normal(size=(n, 3))
+    return scene, np.zeros((n, 3)), d / np.linalg.norm(d, axis=1, keepdims=True)
+
+
+def fine(module: ModuleType, scene: dict, place: dict) -> float:
+    """Mean of the channels of direct light from the one light, by a fine quadrature over it."""
+    x, w = np.polynomial.legendre.leggauss(24)
+    u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
+    hit = module.repeated(place, u.size)
+    u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
+    wi, far, _ = module.sample_light(scene, hit["points"], u3)
+    normal = module.front_normals(scene)[1]
+    area = float(np.linalg.norm(np.cross(scene["edges_u"][1], scene["edges_v"][1])))
+    light = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
+    return float((light @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
+
+
+def through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
+    """The term that is added where the density of the material is differentiated, too."""
+    wi = module.sample_brdf(scene, hit, u)
+    there = module.see(scene, hit["points"], wi)
+    p = module.light_pdf(scene, there["thing"], wi, there["t"])
+    q = module.brdf_pdf(scene, hit, wi)
+    near = module.brdf_pdf(module.demo_table(roughness=value + 1e-4), hit, wi)
+    c = module.mis_weight(q, p) * np.maximum(module.dot(wi, hit["normals"]), 0)
+    value_of = module.brdf(scene, hit, wi) * module.emitted(scene, there)
+    return float(
+        -(value_of.mean(axis=1) * c / np.where(q > 0, q, 1) ** 2 * (near - q) / 1e-4).mean()
+    )
+
+
+def descent(module: ModuleType, shared: bool) -> Array:
+    """A matte base color by gradient descent, one sample per pixel, 110 steps."""
+    lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
+    floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
+    scene = module.assemble([floor, lamp])
+    rng = np.random.default_rng(8)
+    n = 40
+    points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
+    hit = {
+        "points": points,
+        "normals": np.tile(UP, (n, 1)),
+        "wo": np.tile(UP, (n, 1)),
+        "front": np.ones(n, bool),
+        "t": np.ones(n),
+        "thing": np.zeros(n, int),
+    }
+    many = module.repeated(hit, 144)
+    x = (np.arange(12) + 0.5) / 12
+    even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)
+    wi, far, _ = module.sample_light(scene, many["points"], np.tile(even, (n, 1)))
+    light = (wi @ UP) ** 2 * 2.4**2 / far**2
+    picture = 0.6 / np.pi * light.reshape(n, 144).mean(axis=1)
+    track = []
+    for _ in range(110):
+        u = rng.random((4, n, 3))
+        residual = module.direct_light(scene, hit, u[0], u[1]) - picture[:, None]
+        which = u[:2] if shared else u[2:]
+        slope, _ = module.direct_light_backward(scene, hit, *which, 2 * residual / n)
+        scene["base_color"][0] = np.clip(scene["base_color"][0] - 0.15 * slope[0].mean(), 0, 1)
+        track.append(scene["base_color"][0, 0])
+    return np.array(track)
+
+
+def apart(a: Array, b: Array) -> float:
+    return float(np.linalg.norm(a - b) / np.linalg.norm(b))
