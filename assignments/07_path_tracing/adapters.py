@@ -12,7 +12,7 @@ def traced(scene, origins, directions, depth, seed):
     return yours.trace_paths(scene, origins, directions, depth, np.random.default_rng(seed))
 
 
-def recovered(scene, thing, origins, directions, picture, steps, seed):
+def recovered(scene, primitive, origins, directions, picture, steps, seed):
     """(base color, roughness) that `recover` finds with your gradient."""
     rng = np.random.default_rng(seed)
-    return yours.recover(scene, thing, origins, directions, picture, steps, rng)[:2]
+    return yours.recover(scene, primitive, origins, directions, picture, steps, rng)[:2]

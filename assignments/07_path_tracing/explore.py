@@ -51,9 +51,9 @@ print(
 
 # %%
 rays, truth = mine.table_rays(), mine.demo_table(roughness=roughness)
-hit = mine.see(truth, *rays)
-on = hit["thing"] == 0
-many, each = mine.repeated(mine.some(hit, on), mine.SIDE**2), mine.SIDE**2
+hit = mine.closest_hit(truth, *rays)
+on = hit["primitive"] == 0
+many, each = mine.repeated(mine.take(hit, on), mine.SIDE**2), mine.SIDE**2
 table = np.zeros((70, 3))
 for _ in range(16):
     u = mine.strata(rng, on.sum()), mine.strata(rng, on.sum())
@@ -74,7 +74,7 @@ def of_the_core(spp):
     look_at = importlib.import_module("photograd.capture.orbit").look_at
     parts = [
         shapes.rectangle(
-            f"thing{k}",
+            f"primitive{k}",
             *(truth[name][k] for name in ("corners", "edges_u", "edges_v")),
             f"of{k}",
             truth["emission"][k],

@@ -23,15 +23,15 @@ def irradiance(corners: Array) -> float:
 def alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
     """Direct light by one strategy alone, with weight 1: light sampling, BSDF sampling."""
     found = []
-    for by_lamp in (True, False):
-        if by_lamp:
-            wi, _, lamp = module.sample_light(scene, hit["points"], u_light)
+    for by_light_sampling in (True, False):
+        if by_light_sampling:
+            wi, _, light = module.sample_light(scene, hit["points"], u_light)
         else:
             wi = module.sample_brdf(scene, hit, u_surface)
-        there = module.see(scene, hit["points"], wi)
-        if by_lamp:
-            p = module.light_pdf(scene, there["thing"], wi, there["t"])
-            p = np.where(there["thing"] == lamp, p, 0.0)
+        there = module.closest_hit(scene, hit["points"], wi)
+        if by_light_sampling:
+            p = module.light_pdf(scene, there["primitive"], wi, there["t"])
+            p = np.where(there["primitive"] == light, p, 0.0)
         else:
             p = module.brdf_pdf(scene, hit, wi)
         c = np.maximum(module.dot(wi, hit["normals"]), 0) / np.where(p > 0, p, np.inf)
@@ -63,15 +63,15 @@ def fine(module: ModuleType, scene: dict, place: dict) -> float:
     wi, far, _ = module.sample_light(scene, hit["points"], u3)
     normal = module.front_normals(scene)[1]
     area = float(np.linalg.norm(np.cross(scene["edges_u"][1], scene["edges_v"][1])))
-    light = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
-    return float((light @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
+    irradiance = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
+    return float((irradiance @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
 
 
 def through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
     """The term that is added where the density of the material is differentiated, too."""
     wi = module.sample_brdf(scene, hit, u)
-    there = module.see(scene, hit["points"], wi)
-    p = module.light_pdf(scene, there["thing"], wi, there["t"])
+    there = module.closest_hit(scene, hit["points"], wi)
+    p = module.light_pdf(scene, there["primitive"], wi, there["t"])
     q = module.brdf_pdf(scene, hit, wi)
     near = module.brdf_pdf(module.demo_table(roughness=value + 1e-4), hit, wi)
     c = module.mis_weight(q, p) * np.maximum(module.dot(wi, hit["normals"]), 0)
@@ -83,9 +83,9 @@ def through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value:
 
 def descent(module: ModuleType, shared: bool) -> Array:
     """A matte base color by gradient descent, one sample per pixel, 110 steps."""
-    lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
+    light = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
     floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
-    scene = module.assemble([floor, lamp])
+    scene = module.assemble([floor, light])
     rng = np.random.default_rng(8)
     n = 40
     points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
@@ -95,14 +95,14 @@ def descent(module: ModuleType, shared: bool) -> Array:
         "wo": np.tile(UP, (n, 1)),
         "front": np.ones(n, bool),
         "t": np.ones(n),
-        "thing": np.zeros(n, int),
+        "primitive": np.zeros(n, int),
     }
     many = module.repeated(hit, 144)
     x = (np.arange(12) + 0.5) / 12
     even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)
     wi, far, _ = module.sample_light(scene, many["points"], np.tile(even, (n, 1)))
-    light = (wi @ UP) ** 2 * 2.4**2 / far**2
-    picture = 0.6 / np.pi * light.reshape(n, 144).mean(axis=1)
+    irradiance = (wi @ UP) ** 2 * 2.4**2 / far**2
+    picture = 0.6 / np.pi * irradiance.reshape(n, 144).mean(axis=1)
     track = []
     for _ in range(110):
         u = rng.random((4, n, 3))

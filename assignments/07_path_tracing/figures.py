@@ -18,8 +18,8 @@ GAMMA = 1 / 2.2
 def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
     """Irradiance below a light, by the density of the handout and by two wrong ones."""
     aside = np.linspace(0.0, 4.0, 33)
-    lamp = module.rectangle([-0.5, 2, -0.5], [1, 0, 0], [0, 0, 1], emission=1.0)
-    scene = module.assemble([lamp])
+    light = module.rectangle([-0.5, 2, -0.5], [1, 0, 0], [0, 0, 1], emission=1.0)
+    scene = module.assemble([light])
     x, w = np.polynomial.legendre.leggauss(6)
     u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
     u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
@@ -27,8 +27,8 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
     ours, by_area, no_cosine, right = [], [], [], []
     for s in aside:
         points = np.tile([s, 0.0, 0.0], (36, 1))
-        wi, distance, thing = module.sample_light(scene, points, u3)
-        pdf = module.light_pdf(scene, thing, wi, distance)
+        wi, distance, primitive = module.sample_light(scene, points, u3)
+        pdf = module.light_pdf(scene, primitive, wi, distance)
         cosine = wi @ UP
         ours.append(weights @ (cosine / np.where(pdf > 0, pdf, 1)))
         by_area.append(weights @ cosine)
@@ -69,17 +69,17 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
         )
         for k, each in enumerate(roughness)
     ]
-    lamp = module.rectangle([-1, 0.4, -1.4], [2, 0, 0], [0, 0.6, 0.3], emission=1.5)
-    scene = module.assemble([*strips, lamp])
+    light = module.rectangle([-1, 0.4, -1.4], [2, 0, 0], [0, 0.6, 0.3], emission=1.5)
+    scene = module.assemble([*strips, light])
     origins, directions = module.camera_rays(width, height, [0, 1.3, 1.7], [0, 0, -0.1], 48)
-    hit = module.see(scene, origins, directions)
-    on = (hit["thing"] >= 0) & (hit["thing"] < 4)
+    hit = module.closest_hit(scene, origins, directions)
+    on = (hit["primitive"] >= 0) & (hit["primitive"] < 4)
     rng = np.random.default_rng(3)
-    many = module.repeated(module.some(hit, on), samples)
-    u = rng.random((2, len(many["thing"]), 3))
+    many = module.repeated(module.take(hit, on), samples)
+    u = rng.random((2, len(many["primitive"]), 3))
     pictures = [*parts.alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
     pictures = [p[:, 0].reshape(-1, samples) for p in pictures]
-    strip = hit["thing"][on]
+    strip = hit["primitive"][on]
     # Error of a sample over the brightness of the strip, both as root mean squares: dark pixels, of
     # which a smooth strip has many, count little in either.
     bright = pictures[2].mean(axis=1)
@@ -110,7 +110,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     ):
         shown = np.zeros(width * height)
         shown[on] = p[:, :shown_ones].mean(axis=1)
-        shown[hit["thing"] == 4] = 1.5
+        shown[hit["primitive"] == 4] = 1.5
         gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
         axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
         axes[0, column].set(xticks=[], yticks=[], title=name)
@@ -176,21 +176,21 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     albedo, depths = 0.4, np.array([2, 4, 8, 12])
     rng = np.random.default_rng(5)
     room, origins, directions = parts.furnace(module, albedo, 2500, rng)
-    see, always = module.see, module.ALWAYS
+    closest_hit, always = module.closest_hit, module.ALWAYS
     means, visits, prices = [], [], []
     for limit in (always, 99):
         counted = [0]
 
         def watched(scene: object, o: Array, d: Array, counted: list[int] = counted) -> object:
             counted[0] += len(o)
-            return see(scene, o, d)
+            return closest_hit(scene, o, d)
 
         rows = []
         for depth in depths:
             counted[0] = 0
-            module.ALWAYS, module.see = limit, watched
+            module.ALWAYS, module.closest_hit = limit, watched
             seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
-            module.ALWAYS, module.see = always, see
+            module.ALWAYS, module.closest_hit = always, closest_hit
             # Three rays start at each vertex: two for direct light, one to continue.
             visited = counted[0] / len(origins) / 3
             rows.append(
@@ -232,7 +232,7 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     place = {
         "points": np.array([[0.1, 0, 0.1]]),
         "normals": UP[None],
-        "thing": np.array([0]),
+        "primitive": np.array([0]),
         "wo": np.array([[0, 0.8, 0.6]]),
         "front": np.array([True]),
         "t": np.ones(1),
@@ -244,7 +244,7 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
         u = rng.random((2, n, 3))
         batches = [
             module.direct_light_backward(
-                scene, module.some(hit, rows), u[0, rows], u[1, rows], d[rows]
+                scene, module.take(hit, rows), u[0, rows], u[1, rows], d[rows]
             )[1][0]
             for rows in np.arange(n).reshape(15, -1)
         ]
@@ -284,10 +284,10 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     truth, rays = module.demo_table(), module.table_rays()
     picture, slope, core = module.core_answers()
     rng = np.random.default_rng(7)
-    hit = module.see(truth, *rays)
-    on = hit["thing"] == 0
+    hit = module.closest_hit(truth, *rays)
+    on = hit["primitive"] == 0
     pixels, each = int(on.sum()), module.SIDE**2
-    many = module.repeated(module.some(hit, on), each)
+    many = module.repeated(module.take(hit, on), each)
     seen = np.zeros((70, 3))
     for _ in range(4):
         u = module.strata(rng, pixels), module.strata(rng, pixels)

@@ -9,8 +9,8 @@ material of assignment 04; `matte` (T,) of bool: no specular coating, only base_
 
 The closest hits of N rays are a *hit*, a dict of arrays with N rows: `points` (N, 3), `normals`
 (N, 3), unit, on the side of the viewer, `wo` (N, 3), unit, to the viewer, `front` (N,) of bool,
-`t` (N,) the distance from the ray origin, in meters, and `thing` (N,), the index of the primitive,
-or -1 where nothing is hit.
+`t` (N,) the distance from the ray origin, in meters, and `primitive` (N,), the index of the
+primitive, or -1 where nothing is hit.
 
 Directions are unit vectors that leave the surface; wi leads to the light. Radiance is linear, in
 three channels. Random numbers come as arguments: `u` uniform in [0, 1), or a generator `rng`.
@@ -49,7 +49,7 @@ def front_normals(scene):
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def meet(scene, origins, directions):
+def intersect(scene, origins, directions):
     """Closest hit of each ray: (t (N,), primitive (N,)), infinite and -1 where there is none."""
     u, v, normals = scene["edges_u"], scene["edges_v"], front_normals(scene)
     slope = directions @ normals.T
@@ -69,21 +69,21 @@ def meet(scene, origins, directions):
     t_ball = np.where(-half_b - root > T_MIN, -half_b - root, root - half_b)
     t_ball = np.where((rest > 0) & (t_ball > T_MIN), t_ball, np.inf)
     t = np.concatenate([t, t_ball], axis=1)
-    thing = t.argmin(axis=1)
-    t = t[np.arange(len(t)), thing]
-    return t, np.where(np.isinf(t), -1, thing)
+    primitive = t.argmin(axis=1)
+    t = t[np.arange(len(t)), primitive]
+    return t, np.where(np.isinf(t), -1, primitive)
 
 
-def see(scene, origins, directions):
+def closest_hit(scene, origins, directions):
     """The closest hits of N rays: a hit with N rows. Directions (N, 3) are unit vectors."""
-    t, thing = meet(scene, origins, directions)
+    t, primitive = intersect(scene, origins, directions)
     far = np.where(np.isinf(t), 0.0, t)
     points = origins + far[:, None] * directions
     quads, balls = len(scene["corners"]), scene["balls"]
     outward = -directions.copy()  # where nothing is hit
-    flat, round_ = (thing >= 0) & (thing < quads), thing >= quads
-    outward[flat] = front_normals(scene)[thing[flat]]
-    which = balls[thing[round_] - quads]
+    flat, round_ = (primitive >= 0) & (primitive < quads), primitive >= quads
+    outward[flat] = front_normals(scene)[primitive[flat]]
+    which = balls[primitive[round_] - quads]
     outward[round_] = (points[round_] - which[:, :3]) / which[:, 3:]
     front = np.sum(outward * directions, axis=1) < 0
     normals = np.where(front[:, None], outward, -outward)
@@ -93,11 +93,11 @@ def see(scene, origins, directions):
         "wo": -directions,
         "front": front,
         "t": t,
-        "thing": thing,
+        "primitive": primitive,
     }
 
 
-def some(hit, rows):
+def take(hit, rows):
     """Rows of a hit: by indices, or by a mask (N,) of bool."""
     return {name: values[rows] for name, values in hit.items()}
 
@@ -126,11 +126,11 @@ def camera_rays(width, height, place, target, degrees):
 
 def emitted(scene, hit):
     """The radiance (N, 3) that a hit emits toward the viewer; 0 but on the fronts of lights."""
-    shines = hit["front"] & (hit["thing"] >= 0)
-    return np.where(shines[:, None], scene["emission"][hit["thing"]], 0.0)
+    shines = hit["front"] & (hit["primitive"] >= 0)
+    return np.where(shines[:, None], scene["emission"][hit["primitive"]], 0.0)
 
 
-def lamps(scene):
+def emitters(scene):
     """The indices (K,) of the primitives that emit."""
     return np.flatnonzero(scene["emission"].any(axis=1))
 
@@ -144,15 +144,15 @@ def sample_light(scene, points, u3):
         u3: (N, 3), uniform in [0, 1).
 
     Returns:
-        (wi (N, 3), distance (N,), thing (N,)): the direction and the distance to the sampled point,
-        and the light. Neither visibility nor the side of the light is tested.
+        (wi (N, 3), distance (N,), primitive (N,)): the direction and the distance to the sampled
+        point, and the index of the light. Neither visibility nor the side of the light is tested.
     """
-    numbers = lamps(scene)
-    thing = numbers[(u3[:, 0] * len(numbers)).astype(int)]
-    along = u3[:, 1:2] * scene["edges_u"][thing] + u3[:, 2:] * scene["edges_v"][thing]
-    wi = scene["corners"][thing] + along - points
+    numbers = emitters(scene)
+    primitive = numbers[(u3[:, 0] * len(numbers)).astype(int)]
+    along = u3[:, 1:2] * scene["edges_u"][primitive] + u3[:, 2:] * scene["edges_v"][primitive]
+    wi = scene["corners"][primitive] + along - points
     distance = np.linalg.norm(wi, axis=1)
-    return wi / distance[:, None], distance, thing
+    return wi / distance[:, None], distance, primitive
 
 
 def _frames(normals):
@@ -170,7 +170,7 @@ def _local(hit, wi):
 
 
 def _material(scene, hit):
-    return tuple(scene[name][hit["thing"]] for name in ("base_color", "metalness", "roughness"))
+    return tuple(scene[name][hit["primitive"]] for name in ("base_color", "metalness", "roughness"))
 
 
 def brdf(scene, hit, wi):
@@ -179,7 +179,7 @@ def brdf(scene, hit, wi):
     base_color, metalness, roughness = _material(scene, hit)
     matte = np.where(((wo[:, 2] > 0) & (wi[:, 2] > 0))[:, None], base_color / np.pi, 0.0)
     glossy = gltf(wo, wi, base_color, metalness, roughness)
-    return np.where(scene["matte"][hit["thing"]][:, None], matte, glossy)
+    return np.where(scene["matte"][hit["primitive"]][:, None], matte, glossy)
 
 
 def brdf_backward(scene, hit, wi, d_f):
@@ -189,7 +189,7 @@ def brdf_backward(scene, hit, wi, d_f):
     held fixed.
     """
     wo, wi = _local(hit, wi)
-    matte = scene["matte"][hit["thing"]]
+    matte = scene["matte"][hit["primitive"]]
     d_base_color, _, d_roughness = gltf_backward(wo, wi, *_material(scene, hit), d_f)
     above = ((wo[:, 2] > 0) & (wi[:, 2] > 0))[:, None]
     d_matte = np.where(above, d_f / np.pi, 0.0)
@@ -205,8 +205,8 @@ def sample_brdf(scene, hit, u3):
     wo = _local(hit, hit["normals"])[0]
     phi, r = 2 * np.pi * u3[:, 1], np.sqrt(u3[:, 2])
     even = np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - u3[:, 2])], axis=1)
-    mirrored = sample_ggx(wo, scene["roughness"][hit["thing"]], u3[:, 1:])
-    by_cosine = scene["matte"][hit["thing"]] | (u3[:, 0] < 0.5)
+    mirrored = sample_ggx(wo, scene["roughness"][hit["primitive"]], u3[:, 1:])
+    by_cosine = scene["matte"][hit["primitive"]] | (u3[:, 0] < 0.5)
     wi = np.where(by_cosine[:, None], even, mirrored)
     return np.einsum("nij,ni->nj", _frames(hit["normals"]), wi)
 
@@ -215,19 +215,19 @@ def brdf_pdf(scene, hit, wi):
     """The density of `sample_brdf` per solid angle, (N,) in 1/sr; 0 below the surface."""
     wo, wi = _local(hit, wi)
     even = np.maximum(wi[:, 2], 0) / np.pi
-    mirrored = ggx_pdf(wo, wi, scene["roughness"][hit["thing"]])
-    return np.where(scene["matte"][hit["thing"]], even, 0.5 * even + 0.5 * mirrored)
+    mirrored = ggx_pdf(wo, wi, scene["roughness"][hit["primitive"]])
+    return np.where(scene["matte"][hit["primitive"]], even, 0.5 * even + 0.5 * mirrored)
 
 
 # Your tasks ---------------------------------------------------------------------------------------
 
 
-def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> PerRow:
+def light_pdf(scene: Scene, primitive: Indices, wi: Vectors, distance: PerRow) -> PerRow:
     """The density of `sample_light` per solid angle.
 
     Args:
         scene: with K lights.
-        thing: (N,), the primitive in the direction wi; -1 for none.
+        primitive: (N,), the primitive in the direction wi; -1 for none.
         wi: (N, 3), from the point toward it.
         distance: (N,), its distance, in meters.
 
@@ -236,14 +236,14 @@ def light_pdf(scene: Scene, thing: Indices, wi: Vectors, distance: PerRow) -> Pe
         equations (5) and (6).
     """
     # >>> solution 07.1
-    numbers = lamps(scene)
-    rows = np.flatnonzero(np.isin(thing, numbers))
-    lamp = thing[rows]
-    width, height = (np.linalg.norm(scene[edge][lamp], axis=1) for edge in ("edges_u", "edges_v"))
-    facing = -np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)
+    numbers = emitters(scene)
+    rows = np.flatnonzero(np.isin(primitive, numbers))
+    light = primitive[rows]
+    width, height = (np.linalg.norm(scene[edge][light], axis=1) for edge in ("edges_u", "edges_v"))
+    facing = -np.sum(wi[rows] * front_normals(scene)[light], axis=1)
     seen = facing > 0
     small = len(numbers) * width[seen] * height[seen] * facing[seen]
-    pdf = np.zeros(len(thing))
+    pdf = np.zeros(len(primitive))
     pdf[rows[seen]] = distance[rows[seen]] ** 2 / small
     return pdf
     # <<< solution
@@ -285,16 +285,16 @@ def direct_light(
         equations (8) to (10).
     """
     # >>> solution 07.3
-    drawn_by = scene if proposal is None else proposal
-    total = np.zeros((len(hit["thing"]), 3))
-    wi, _, chosen = sample_light(drawn_by, hit["points"], u_light)
-    for way, wanted in ((wi, chosen), (sample_brdf(drawn_by, hit, u_surface), None)):
-        there = see(scene, hit["points"], way)
-        by_light = light_pdf(drawn_by, there["thing"], way, there["t"])
-        by_surface = brdf_pdf(drawn_by, hit, way)
+    sampled_from = scene if proposal is None else proposal
+    total = np.zeros((len(hit["primitive"]), 3))
+    wi, _, chosen = sample_light(sampled_from, hit["points"], u_light)
+    for way, wanted in ((wi, chosen), (sample_brdf(sampled_from, hit, u_surface), None)):
+        there = closest_hit(scene, hit["points"], way)
+        by_light = light_pdf(sampled_from, there["primitive"], way, there["t"])
+        by_surface = brdf_pdf(sampled_from, hit, way)
         if wanted is not None:
             mine, theirs = by_light, by_surface
-            lit = (mine > 0) & (there["thing"] == wanted)
+            lit = (mine > 0) & (there["primitive"] == wanted)
         else:
             mine, theirs = by_surface, by_light
             lit = mine > 0
@@ -342,10 +342,10 @@ def trace_paths(
         (15).
     """
     # >>> solution 07.5
-    hit = see(scene, origins, directions)
+    hit = closest_hit(scene, origins, directions)
     radiance = emitted(scene, hit)
-    live = np.flatnonzero(hit["thing"] >= 0)
-    hit, beta = some(hit, live), np.ones((len(live), 3))
+    live = np.flatnonzero(hit["primitive"] >= 0)
+    hit, beta = take(hit, live), np.ones((len(live), 3))
     for bounce in range(depth - 1):
         fresh = rng.random((3, len(live), 3))
         radiance[live] += beta * direct_light(scene, hit, *fresh[:2])
@@ -355,9 +355,9 @@ def trace_paths(
         beta = beta * brdf(scene, hit, wi) * share[:, None]
         if bounce >= ALWAYS:
             beta, _ = roulette(beta, rng.random(len(live)))
-        there = see(scene, hit["points"], wi)
-        goes_on = (there["thing"] >= 0) & beta.any(axis=1)
-        hit, beta, live = some(there, goes_on), beta[goes_on], live[goes_on]
+        there = closest_hit(scene, hit["points"], wi)
+        goes_on = (there["primitive"] >= 0) & beta.any(axis=1)
+        hit, beta, live = take(there, goes_on), beta[goes_on], live[goes_on]
     return radiance
     # <<< solution
 
@@ -381,24 +381,27 @@ def direct_light_backward(
         primitives that the hit does not contain. Handout equations (16) to (18).
     """
     # >>> solution 07.6
-    n, things = len(hit["thing"]), len(scene["matte"])
-    towards, _, lamp = sample_light(scene, hit["points"], u_light)
+    n, primitives = len(hit["primitive"]), len(scene["matte"])
+    towards, _, light = sample_light(scene, hit["points"], u_light)
     ways = np.concatenate([towards, sample_brdf(scene, hit, u_surface)])
-    both = some(hit, np.tile(np.arange(n), 2))
-    found = see(scene, both["points"], ways)
-    of_lamp = light_pdf(scene, found["thing"], ways, found["t"])
+    both = take(hit, np.tile(np.arange(n), 2))
+    found = closest_hit(scene, both["points"], ways)
+    of_light = light_pdf(scene, found["primitive"], ways, found["t"])
     of_brdf = brdf_pdf(scene, both, ways)
-    by_lamp = np.arange(2 * n) < n
-    own, other = np.where(by_lamp, of_lamp, of_brdf), np.where(by_lamp, of_brdf, of_lamp)
+    by_light_sampling = np.arange(2 * n) < n
+    own, other = (
+        np.where(by_light_sampling, of_light, of_brdf),
+        np.where(by_light_sampling, of_brdf, of_light),
+    )
     counts = own > 0
-    counts[:n] &= found["thing"][:n] == lamp
+    counts[:n] &= found["primitive"][:n] == light
     factor = mis_weight(own, other) * np.sum(ways * both["normals"], axis=1)
     factor = np.divide(factor, own, out=np.zeros(2 * n), where=counts)
     d_f = np.tile(d_radiance, (2, 1)) * factor[:, None] * emitted(scene, found)
     by_color, by_rough = brdf_backward(scene, both, ways, d_f)
-    d_base_color, d_roughness = np.zeros((things, 3)), np.zeros(things)
-    np.add.at(d_base_color, both["thing"], by_color)
-    np.add.at(d_roughness, both["thing"], by_rough)
+    d_base_color, d_roughness = np.zeros((primitives, 3)), np.zeros(primitives)
+    np.add.at(d_base_color, both["primitive"], by_color)
+    np.add.at(d_roughness, both["primitive"], by_rough)
     return d_base_color, d_roughness
     # <<< solution
 
@@ -416,32 +419,37 @@ def ball(center, radius, **material):
     return {"ball": [*center, radius], **material}
 
 
-def assemble(things):
+def assemble(primitives):
     """A scene of rectangles and balls; balls come last.
 
     Each primitive may have base_color, a number or three, emission likewise, metalness, roughness,
     and matte. Defaults are 0.5, 0, 0, 0.5, and true if neither metalness nor roughness is given.
     """
-    things = sorted(things, key=lambda thing: "ball" in thing)
-    flat = [thing for thing in things if "ball" not in thing]
+    primitives = sorted(primitives, key=lambda primitive: "ball" in primitive)
+    flat = [primitive for primitive in primitives if "ball" not in primitive]
     scene = {
-        name: np.array([thing[key] for thing in flat], float).reshape(-1, 3)
+        name: np.array([primitive[key] for primitive in flat], float).reshape(-1, 3)
         for name, key in (("corners", "corner"), ("edges_u", "edge_u"), ("edges_v", "edge_v"))
     }
-    balls = [thing["ball"] for thing in things if "ball" in thing]
+    balls = [primitive["ball"] for primitive in primitives if "ball" in primitive]
     scene["balls"] = np.array(balls, float).reshape(-1, 4)
     for name, default in (("base_color", 0.5), ("emission", 0.0)):
-        scene[name] = np.array([np.ones(3) * thing.get(name, default) for thing in things])
+        scene[name] = np.array(
+            [np.ones(3) * primitive.get(name, default) for primitive in primitives]
+        )
     for name, default in (("metalness", 0.0), ("roughness", 0.5)):
-        scene[name] = np.array([float(thing.get(name, default)) for thing in things])
-    glossy = [thing.get("matte", not {"metalness", "roughness"} & set(thing)) for thing in things]
+        scene[name] = np.array([float(primitive.get(name, default)) for primitive in primitives])
+    glossy = [
+        primitive.get("matte", not {"metalness", "roughness"} & set(primitive))
+        for primitive in primitives
+    ]
     scene["matte"] = np.array(glossy, bool)
     return scene
 
 
 def demo_room():
     """A room with a light in the ceiling, a glossy floor and a metal ball: primitive 7."""
-    lamp, white = {"emission": [9.0, 8.0, 6.5], "base_color": 0.0}, {"base_color": 0.7}
+    light, white = {"emission": [9.0, 8.0, 6.5], "base_color": 0.0}, {"base_color": 0.7}
     return assemble(
         [
             rectangle(
@@ -451,7 +459,7 @@ def demo_room():
             rectangle([-1, 0, -1], [2, 0, 0], [0, 2, 0], **white),
             rectangle([-1, 0, -1], [0, 2, 0], [0, 0, 2], base_color=[0.65, 0.1, 0.1]),
             rectangle([1, 0, -1], [0, 0, 2], [0, 2, 0], base_color=[0.15, 0.45, 0.15]),
-            rectangle([-0.35, 1.98, -0.35], [0.7, 0, 0], [0, 0, 0.7], **lamp),
+            rectangle([-0.35, 1.98, -0.35], [0.7, 0, 0], [0, 0, 0.7], **light),
             rectangle(
                 [-0.95, 0.15, -0.95], [0.5, 0, -0.02], [0, 0.5, 0], base_color=[0.1, 0.2, 0.6]
             ),
@@ -484,7 +492,7 @@ def table_rays():
 
 def repeated(hit, times):
     """A hit with each row repeated `times` times."""
-    return some(hit, np.repeat(np.arange(len(hit["thing"])), times))
+    return take(hit, np.repeat(np.arange(len(hit["primitive"])), times))
 
 
 def strata(rng, pixels, side=SIDE):
@@ -500,7 +508,7 @@ def strata(rng, pixels, side=SIDE):
     return np.concatenate([first[..., None], last], axis=2).reshape(-1, 3)
 
 
-def recover(scene, thing, origins, directions, picture, steps, rng):
+def recover(scene, primitive, origins, directions, picture, steps, rng):
     """Recover the base color and the roughness of one primitive from an image, by your gradient.
 
     Adam on the mean squared error relative to the image (plus 0.1), so that the highlight does not
@@ -508,8 +516,8 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
     (a dual-buffer loss): section 6 of the handout says why.
 
     Args:
-        scene: known but for base_color and roughness of `thing`, which are an initial guess.
-        thing: the index of the primitive.
+        scene: known but for base_color and roughness of `primitive`, which are an initial guess.
+        primitive: the index of the primitive.
         origins, directions: (N, 3), the rays of the image.
         picture: (N, 3), direct light only.
         steps: of gradient descent, 1 or more.
@@ -524,11 +532,11 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
         "base_color": scene["base_color"].copy(),
         "roughness": scene["roughness"].copy(),
     }
-    hit = see(own, origins, directions)
-    mine = hit["thing"] == thing
+    hit = closest_hit(own, origins, directions)
+    mine = hit["primitive"] == primitive
     pixels, samples = int(mine.sum()), SIDE**2
-    hit = repeated(some(hit, mine), samples)
-    x = np.append(own["base_color"][thing], own["roughness"][thing])
+    hit = repeated(take(hit, mine), samples)
+    x = np.append(own["base_color"][primitive], own["roughness"][primitive])
     mean, square, track = np.zeros(4), np.zeros(4), []
     for step in range(1, steps + 1):
         u = [strata(rng, pixels) for _ in range(4)]
@@ -537,26 +545,26 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
         d_shown /= shown.size * samples
         d_hit = np.repeat(d_shown, samples, axis=0)
         d_base_color, d_roughness = direct_light_backward(own, hit, u[2], u[3], d_hit)
-        d_x = np.append(d_base_color[thing], d_roughness[thing])
+        d_x = np.append(d_base_color[primitive], d_roughness[primitive])
         mean, square = 0.8 * mean + 0.2 * d_x, 0.95 * square + 0.05 * d_x**2
         pull = mean / (1 - 0.8**step) / np.sqrt(square / (1 - 0.95**step) + 1e-30)
         x = np.clip(x - 0.06 * (1 - step / (steps + 1)) ** 2 * pull, 0.0, 1.0)
         x[3] = max(x[3], 0.1)
-        own["base_color"][thing], own["roughness"][thing] = x[:3], x[3]
+        own["base_color"][primitive], own["roughness"][primitive] = x[:3], x[3]
         track.append(x.copy())
     track = np.array(track)
     found = track[-max(1, steps // 3) :].mean(axis=0)
     return found[:3], float(found[3]), track
 
 
-def by_roughness(scene, thing, origins, directions, rng, side=12):
+def by_roughness(scene, primitive, origins, directions, rng, side=12):
     """Derivative of each pixel (N,), mean of RGB, with respect to a primitive's roughness."""
-    hit, slope = see(scene, origins, directions), np.zeros(len(origins))
-    for k in np.flatnonzero(hit["thing"] == thing):
-        many = repeated(some(hit, [k]), side**2)
+    hit, slope = closest_hit(scene, origins, directions), np.zeros(len(origins))
+    for k in np.flatnonzero(hit["primitive"] == primitive):
+        many = repeated(take(hit, [k]), side**2)
         u = strata(rng, 1, side), strata(rng, 1, side)
         d = np.full((side**2, 3), 1 / (3 * side**2))
-        slope[k] = direct_light_backward(scene, many, *u, d)[1][thing]
+        slope[k] = direct_light_backward(scene, many, *u, d)[1][primitive]
     return slope
 
 

@@ -58,21 +58,21 @@ def render_back(gaussians, camera, pixels, background, d_shown):
     return splatting.render(gaussians, camera, pixels, background)[1](d_shown)
 
 
-def densify(gaussians, pressure, seed, most):
+def densify(gaussians, grad2d, seed, max_count):
     """`densify` with a generator of this seed; the scene as a list, then source as float64."""
     rng = np.random.default_rng(seed)
-    after, source = splatting.densify(gaussians, pressure, rng, most)
+    after, source = splatting.densify(gaussians, grad2d, rng, max_count)
     names = ("means", "log_scales", "quats", "opacity_logits", "colors")
     return [*(after[name] for name in names), np.asarray(source).astype(np.float64)]
 
 
-def densify_again(gaussians, pressure, seed, most):
+def densify_again(gaussians, grad2d, seed, max_count):
     """`densify` for the same arrays the second time."""
-    densify(gaussians, pressure, seed, most)
-    return densify(gaussians, pressure, seed, most)
+    densify(gaussians, grad2d, seed, max_count)
+    return densify(gaussians, grad2d, seed, max_count)
 
 
-def fitted(gaussians, views, steps, seed, background, most):
+def fitted(gaussians, views, steps, seed, background, max_count):
     """The losses of a fit from here."""
     rng = np.random.default_rng(seed)
-    return splatting.fit(gaussians, views, steps, rng, background, most, every=20)[1]
+    return splatting.fit(gaussians, views, steps, rng, background, max_count, every=20)[1]

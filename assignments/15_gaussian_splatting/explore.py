@@ -3,7 +3,7 @@
 # Photographs three balls defined by formulas, fits Gaussians to them with your functions, and plots
 # their gradients; then two formulas of public code are tested by finite differences of your own
 # functions, and everything is compared with the C++ core where that is installed. Never graded.
-# `python explore.py` takes `--steps`, `--pixels`, `--views`, `--most` (Gaussians),
+# `python explore.py` takes `--steps`, `--pixels`, `--views`, `--max-count` (Gaussians),
 # `--every` (steps between two changes of their number), `--seed`, and `--core-pixels`.
 
 # %%
@@ -18,7 +18,7 @@ from photograd_course.explore import option
 from PIL import Image
 
 steps, size, count = option("steps", 600), option("pixels", 64), option("views", 12)
-most, every, seed = option("most", 500), option("every", 40), option("seed", 0)
+max_count, every, seed = option("max-count", 500), option("every", 40), option("seed", 0)
 BACKGROUND = np.array([0.05, 0.06, 0.09])
 
 # %% [markdown]
@@ -76,7 +76,7 @@ def cloud(number, rng):
 
 views = [(camera, photograph(camera)) for camera in around(count, size)]
 unseen = [(camera, photograph(camera)) for camera in around(3, size, 1.0)]
-start = cloud(min(120, most), np.random.default_rng(seed))
+start = cloud(min(120, max_count), np.random.default_rng(seed))
 
 # %% [markdown]
 # ## The fit
@@ -100,7 +100,7 @@ def watch(step, scene, _):
 
 
 found, losses = mine.fit(
-    start, views, steps, np.random.default_rng(seed), BACKGROUND, most, every, watch
+    start, views, steps, np.random.default_rng(seed), BACKGROUND, max_count, every, watch
 )
 seconds = time.perf_counter() - began
 scores = [decibels(mine.picture(found, camera, BACKGROUND)[0], truth) for camera, truth in unseen]
@@ -138,7 +138,7 @@ places, *_ = mine.project(found["means"], cov, camera)
 W = camera["camera_from_world"][:2, :3]
 depth = mine.depths(found["means"], camera)
 arrows = -(gradient["means"] @ W.T) * (depth / camera["focal"][0])[:, None]
-pull = np.linalg.norm(gradient["pull"], axis=1)
+absgrad = np.linalg.norm(gradient["absgrad"], axis=1)
 figure = Figure(figsize=(13, 4.4), layout="constrained")
 panels = figure.subplots(1, 3)
 for axes, image, title in (
@@ -148,11 +148,13 @@ for axes, image, title in (
 ):
     axes.imshow(np.clip(image, 0, 1), extent=(0, size, size, 0))
     axes.set(title=title, xticks=[], yticks=[], xlim=(0, size), ylim=(size, 0))
-panels[2].scatter(*places.T, s=300 * pull / pull.max(), facecolors="none", edgecolors="w", lw=0.7)
+panels[2].scatter(
+    *places.T, s=300 * absgrad / absgrad.max(), facecolors="none", edgecolors="w", lw=0.7
+)
 long = np.linalg.norm(arrows, axis=1).max()
 panels[2].quiver(*places.T, *(arrows.T / long), angles="xy", scale_units="xy", scale=0.2, color="r")
-figure.savefig("pull.png", dpi=100)
-print("pull.png: a photograph, your image, and the gradients")
+figure.savefig("absgrad.png", dpi=100)
+print("absgrad.png: a photograph, your image, and the gradients")
 
 # %% [markdown]
 # ## A test of two formulas of public code
@@ -264,7 +266,7 @@ def of_the_core():
 
         def back(d_shown):
             got = splat.render_backward(context, np.ascontiguousarray(d_shown))
-            rest = {"colors": got.gaussians["sh"][:, 0] / Y0, "pull": np.abs(got.screen)}
+            rest = {"colors": got.gaussians["sh"][:, 0] / Y0, "absgrad": np.abs(got.screen)}
             return {
                 **{key: got.gaussians[key] for key in told},
                 **rest,
@@ -305,7 +307,7 @@ else:
         2 * steps,
         np.random.default_rng(seed),
         BACKGROUND,
-        8 * most,
+        8 * max_count,
         every,
     )
     mine.picture = kept_back

@@ -99,7 +99,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     one["means"][:], one["colors"][:] = 0.0, 0.7
     shown, back = module.render(one, camera, pixels, BLACK)
     d_shown = 2 * (shown - truth) / len(pixels)
-    total = back(d_shown)["pull"][0]
+    total = back(d_shown)["absgrad"][0]
     single = []
     cov, _ = module.covariance(one["quats"], one["log_scales"])
     mean2d, cov2d, depth, _ = module.project(one["means"], cov, camera)
@@ -109,19 +109,21 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         )
         _, back_blend = module.composite(alpha, one["colors"], depth, BLACK)
         single.append(back_alpha(back_blend(d_shown[k, None])[0])[0][0])
-    pulls = -np.array(single)
-    signed = np.abs(pulls.sum(axis=0))
+    terms = -np.array(single)
+    signed = np.abs(terms.sum(axis=0))
     views = [(camera, truth.reshape(n, n, 3))]
     curves = [
-        module.fit(parts.cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, most, 20)[1]
-        for most in (0, 60)
+        module.fit(parts.cloud(4, 0.3), views, 120, np.random.default_rng(1), BLACK, max_count, 20)[
+            1
+        ]
+        for max_count in (0, 60)
     ]
     facts: Facts = {
         "the sum along x is less than 5 % of the sum of absolute values": Fact(
             signed[0] / total[0], 0, 0.05
         ),
         "the absolute gradient is the sum of absolute values": Fact(
-            total[0] / np.abs(pulls[:, 0]).sum(), 1 - 1e-9, 1 + 1e-9
+            total[0] / np.abs(terms[:, 0]).sum(), 1 - 1e-9, 1 + 1e-9
         ),
         "with densify the loss ends below a tenth": Fact(curves[1][-1] / curves[0][-1], 0, 0.1),
     }
@@ -130,7 +132,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     left.quiver(
         x,
         y,
-        *(pulls / np.abs(pulls).max()).T,
+        *(terms / np.abs(terms).max()).T,
         angles="xy",
         scale_units="xy",
         scale=0.5,
@@ -177,8 +179,8 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     shown, back = module.picture(scene, camera, BLACK)
     error = shown - truth
     gradient = back(2 * error / error[..., 0].size)
-    pull = np.linalg.norm(gradient["pull"], axis=1) * SIZE / 2
-    chosen = pull > module.THRESHOLD
+    absgrad = np.linalg.norm(gradient["absgrad"], axis=1) * SIZE / 2
+    chosen = absgrad > module.THRESHOLD
     moved, slope = {**scene}, gradient["means"]
     moved["means"] = scene["means"] - 1e-5 * slope / np.abs(slope).max()
     fall = np.sum(error**2) - np.sum((module.picture(moved, camera, BLACK)[0] - truth) ** 2)
@@ -218,7 +220,7 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
         panels[2].scatter(
             *(places[which] - 0.5).T,
-            s=120 * pull[which] / pull.max(),
+            s=120 * absgrad[which] / absgrad.max(),
             facecolors="none",
             edgecolors=color,
             linewidths=0.9,

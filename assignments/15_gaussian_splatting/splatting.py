@@ -156,8 +156,8 @@ def screen_alpha(
         pixels: (P, 2), points on the screen.
 
     Returns:
-        (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, pull);
-        pull (N, 2) is the absolute gradient, the sum over pixels of the absolute values of their
+        (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, absgrad);
+        absgrad (N, 2) is the absolute gradient, the sum over pixels of the absolute values of their
         contributions to d_mean2d. Handout equations (15) to (21).
     """
     # >>> solution 15.3
@@ -175,8 +175,8 @@ def screen_alpha(
         gx, gy = g * vx, g * vy
         d_S = np.stack([gx * vx / 2, gx * vy, gy * vy / 2]).sum(axis=2).T
         d_mean2d = -np.stack([gx, gy]).sum(axis=2).T
-        pull = np.abs(np.stack([gx, gy])).sum(axis=2).T
-        return d_mean2d, d_S, (1 - o) * g.sum(axis=1), pull
+        absgrad = np.abs(np.stack([gx, gy])).sum(axis=2).T
+        return d_mean2d, d_S, (1 - o) * g.sum(axis=1), absgrad
 
     return np.where(seen, np.minimum(raw, ALPHA_MAX), 0.0), back
     # <<< solution
@@ -230,7 +230,7 @@ def render(
 
     Returns:
         (shown, back): (P, 3); back(d_shown) returns a dict with the derivatives with respect to all
-        five arrays of the scene and "background" (3,), and the absolute gradient "pull" (N, 2);
+        five arrays of the scene and "background" (3,), and the absolute gradient "absgrad" (N, 2);
         culled rows have zeros. Handout equations (26) and (27).
     """
     # >>> solution 15.5
@@ -244,7 +244,7 @@ def render(
     def back(d_shown):
         found = {}
         d_alpha, found["colors"], d_background = blend_back(d_shown)
-        d_mean2d, d_cov2d, found["opacity_logits"], found["pull"] = alpha_back(d_alpha)
+        d_mean2d, d_cov2d, found["opacity_logits"], found["absgrad"] = alpha_back(d_alpha)
         found["means"], d_cov = lens_back(d_mean2d, d_cov2d)
         found["quats"], found["log_scales"] = shape_back(d_cov)
         rows = {key: np.zeros((len(drawn), *each.shape[1:])) for key, each in found.items()}
@@ -257,15 +257,15 @@ def render(
 
 
 def densify(
-    gaussians: Scene, pressure: PerGaussian, rng: np.random.Generator, most: int
+    gaussians: Scene, grad2d: PerGaussian, rng: np.random.Generator, max_count: int
 ) -> tuple[Scene, Source]:
     """Density control: clone, split and prune Gaussians.
 
     Args:
         gaussians: N of them; these arrays must not change.
-        pressure: (N,), positional gradient statistics: mean length of the absolute gradient.
+        grad2d: (N,), positional gradient statistics: mean length of the absolute gradient.
         rng: a numpy.random.Generator, used once: standard_normal((2 K, 3)) for K that are split.
-        most: the largest number of Gaussians, unless more than that stay after pruning.
+        max_count: the largest number of Gaussians, unless more than that stay after pruning.
 
     Returns:
         (gaussians, source): the new scene, and (M,), integers: the old row of each, or -1 for a new
@@ -274,8 +274,8 @@ def densify(
     # >>> solution 15.6
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
     kept = opacity >= FAINT
-    rows = np.argsort(-pressure, kind="stable")
-    chosen = rows[(kept & (pressure > THRESHOLD))[rows]][: max(most - kept.sum(), 0)]
+    rows = np.argsort(-grad2d, kind="stable")
+    chosen = rows[(kept & (grad2d > THRESHOLD))[rows]][: max(max_count - kept.sum(), 0)]
     small = np.exp(gaussians["log_scales"]).max(axis=1) <= SMALL
     clone, split = (np.sort(chosen[each]) for each in (small[chosen], ~small[chosen]))
     kept[split] = False
@@ -329,7 +329,7 @@ def picture(gaussians, camera, background):
 
     def back(d_shown):
         total = {key: np.zeros_like(values) for key, values in gaussians.items()}
-        total.update(pull=np.zeros((len(low), 2)), background=np.zeros(3))
+        total.update(absgrad=np.zeros((len(low), 2)), background=np.zeros(3))
         for block, here, tile_back in tiles:
             for key, values in tile_back(d_shown[block].reshape(-1, 3)).items():
                 total[key][... if key == "background" else here] += values
@@ -365,7 +365,7 @@ class Adam:
                 moments[key] = np.where(old, values[source], 0.0)
 
 
-def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
+def fit(gaussians, views, steps, rng, background, max_count, every=50, watch=None):
     """Given: fit a scene to photographs, one of them per step.
 
     Args:
@@ -374,7 +374,7 @@ def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
         steps: the number of steps.
         rng: a numpy.random.Generator.
         background: (3,).
-        most: the largest number of Gaussians; 0: no density control.
+        max_count: the largest number of Gaussians; 0: no density control.
         every: steps between two calls of `densify`, in the first two thirds of the fit.
         watch: called with (step, gaussians, loss) before each step, or None.
 
@@ -391,14 +391,14 @@ def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
         if watch is not None:
             watch(step, gaussians, losses[step])
         gradient = back(2 * error / error[..., 0].size)
-        pull = np.linalg.norm(gradient["pull"], axis=1)
+        absgrad = np.linalg.norm(gradient["absgrad"], axis=1)
         # The loss is a mean over pixels: with this factor a threshold holds for any image size.
-        total += pull * max(camera["width"], camera["height"]) / 2
-        times += pull > 0
+        total += absgrad * max(camera["width"], camera["height"]) / 2
+        times += absgrad > 0
         gaussians = adam.step(gaussians, gradient)
-        if most and (step + 1) % every == 0 and 3 * step < 2 * steps:
-            pressure = total / np.maximum(times, 1)
-            gaussians, source = densify(gaussians, pressure, rng, most)
+        if max_count and (step + 1) % every == 0 and 3 * step < 2 * steps:
+            grad2d = total / np.maximum(times, 1)
+            gaussians, source = densify(gaussians, grad2d, rng, max_count)
             adam.follow(source)
             total, times = np.zeros(len(source)), np.zeros(len(source))
     return gaussians, losses

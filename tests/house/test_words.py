@@ -20,11 +20,6 @@ from support.words import (
 PYTHON = ROOT / "python"
 # Folders whose comments and docstrings are read.
 SPOKEN = ("python", "docs", "bench", "tools", "assignments", "tests")
-# Texts of the course that hold a banned phrase, and why.
-EXEMPT_TEXTS: dict[str, str] = {
-    "assignments/07_path_tracing/assignment.toml": "vocabulary: `lamp` is a name of the solution",
-    "assignments/07_path_tracing/mutants.toml": "replaced code: `lamp` is a name of the solution",
-}
 
 
 def python_texts() -> dict[str, str]:
@@ -86,9 +81,7 @@ def course_texts() -> dict[str, str]:
 def test_texts_of_the_course_speak_the_language_of_the_field() -> None:
     texts = course_texts()
     assert len(texts) > 60, "the assignments are not found any more"
-    found = {path: banned_phrases(path, text) for path, text in texts.items()}
-    assert [line for path in found if path not in EXEMPT_TEXTS for line in found[path]] == []
-    assert [path for path in EXEMPT_TEXTS if not found.get(path)] == [], "no longer needed"
+    assert [line for path, text in texts.items() for line in banned_phrases(path, text)] == []
 
 
 def test_pages_speak_the_language_of_the_field() -> None:

@@ -10,8 +10,8 @@ check = checks_for(calls=("topo_order",))
 END = -2  # see adapters.order_of
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 EARLY = (
-    "append a value after all its inputs; whoever marks a value already when it is put on the "
-    "stack takes it for done too early: mark it when it is taken from there"
+    "append a value after all its inputs; a value that is marked as visited when it is pushed onto "
+    "the stack counts as done too early: mark it when it is popped"
 )
 
 

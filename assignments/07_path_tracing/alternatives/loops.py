@@ -6,23 +6,23 @@ from path_tracing import (
     brdf,
     brdf_backward,
     brdf_pdf,
+    closest_hit,
     emitted,
-    lamps,
+    emitters,
     sample_brdf,
     sample_light,
-    see,
-    some,
+    take,
 )
 
 
-def light_pdf(scene, thing, wi, distance):
-    shining = lamps(scene)
-    out = np.zeros(len(thing))
+def light_pdf(scene, primitive, wi, distance):
+    shining = emitters(scene)
+    out = np.zeros(len(primitive))
     for what in shining:
         normal = np.cross(scene["edges_u"][what], scene["edges_v"][what])
         size = np.sqrt(normal @ normal)
         c = -(wi @ normal) / size
-        for n in np.flatnonzero((thing == what) & (c > 0)):
+        for n in np.flatnonzero((primitive == what) & (c > 0)):
             out[n] = distance[n] * distance[n] / c[n] / size / len(shining)
     return out
 
@@ -44,14 +44,14 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
     points, normals = hit["points"], hit["normals"]
 
     def one(direction, wanted):
-        there = see(scene, points, direction)
-        p_light = light_pdf(proposal, there["thing"], direction, there["t"])
+        there = closest_hit(scene, points, direction)
+        p_light = light_pdf(proposal, there["primitive"], direction, there["t"])
         p_surface = brdf_pdf(proposal, hit, direction)
         if wanted is None:
             weight, p = mis_weight(p_surface, p_light), p_surface
         else:
             weight, p = mis_weight(p_light, p_surface), p_light
-            weight = weight * (there["thing"] == wanted)
+            weight = weight * (there["primitive"] == wanted)
         value = brdf(scene, hit, direction) * emitted(scene, there)
         c = np.sum(direction * normals, axis=1)
         good = (p > 0) & (c > 0) & (p_light > 0)
@@ -77,14 +77,14 @@ def roulette(beta, u):
 def trace_paths(scene, origins, directions, depth, rng):
     n = len(origins)
     radiance, beta = np.zeros((n, 3)), np.ones((n, 3))
-    running, hit = np.ones(n, bool), see(scene, origins, directions)
+    running, hit = np.ones(n, bool), closest_hit(scene, origins, directions)
     radiance += emitted(scene, hit)
-    running &= hit["thing"] >= 0
+    running &= hit["primitive"] >= 0
     for piece in range(2, depth + 1):
         if not running.any():
             break
         rows = np.flatnonzero(running)
-        here = some(hit, rows)
+        here = take(hit, rows)
         got = direct_light(scene, here, rng.random((len(rows), 3)), rng.random((len(rows), 3)))
         radiance[rows] += beta[rows] * got
         if piece == depth:
@@ -94,14 +94,14 @@ def trace_paths(scene, origins, directions, depth, rng):
         c = np.sum(wi * here["normals"], axis=1)
         good = (pdf > 0) & (c > 0)
         factor = np.zeros((len(rows), 3))
-        factor[good] = brdf(scene, some(here, good), wi[good]) * (c[good] / pdf[good])[:, None]
+        factor[good] = brdf(scene, take(here, good), wi[good]) * (c[good] / pdf[good])[:, None]
         beta[rows] *= factor
         if piece - 2 >= ALWAYS:
             beta[rows], good = roulette(beta[rows], rng.random(len(rows)))
-        after = see(scene, here["points"], wi)
+        after = closest_hit(scene, here["points"], wi)
         for name in hit:
             hit[name][rows] = after[name]
-        running[rows] = good & (after["thing"] >= 0)
+        running[rows] = good & (after["primitive"] >= 0)
     return radiance
 
 
@@ -111,24 +111,24 @@ def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
         np.zeros_like(scene["roughness"]),
     )
     points = hit["points"]
-    wi, _, lamp = sample_light(scene, points, u_light)
+    wi, _, light = sample_light(scene, points, u_light)
     for from_lamp in (True, False):
         if not from_lamp:
             wi = sample_brdf(scene, hit, u_surface)
-        there = see(scene, points, wi)
-        p_light = light_pdf(scene, there["thing"], wi, there["t"])
+        there = closest_hit(scene, points, wi)
+        p_light = light_pdf(scene, there["primitive"], wi, there["t"])
         p_surface = brdf_pdf(scene, hit, wi)
         p, q = (p_light, p_surface) if from_lamp else (p_surface, p_light)
         good = (p > 0) & (q > 0)
         if from_lamp:
-            good &= there["thing"] == lamp
+            good &= there["primitive"] == light
         c = np.sum(wi * hit["normals"], axis=1)
         scale = np.zeros(len(c))
         scale[good] = mis_weight(p, q)[good] * c[good] / p[good]
         d_f = d_radiance * emitted(scene, there) * scale[:, None]
         colors, roughs = brdf_backward(scene, hit, wi, d_f)
-        for thing in np.unique(hit["thing"]):
-            mine = hit["thing"] == thing
-            d_base_color[thing] += colors[mine].sum(axis=0)
-            d_roughness[thing] += roughs[mine].sum()
+        for primitive in np.unique(hit["primitive"]):
+            mine = hit["primitive"] == primitive
+            d_base_color[primitive] += colors[mine].sum(axis=0)
+            d_roughness[primitive] += roughs[mine].sum()
     return d_base_color, d_roughness

@@ -6,24 +6,24 @@ from path_tracing import (
     brdf,
     brdf_backward,
     brdf_pdf,
+    closest_hit,
     dot,
     emitted,
-    lamps,
+    emitters,
     sample_brdf,
     sample_light,
-    see,
-    some,
+    take,
 )
 
 
-def light_pdf(scene, thing, wi, distance):
+def light_pdf(scene, primitive, wi, distance):
     cross = np.cross(scene["edges_u"], scene["edges_v"])  # as long as the area
     flat = len(cross)
     shines = np.zeros(len(scene["matte"]), bool)
-    shines[lamps(scene)] = True
-    wanted = (thing >= 0) & shines[thing]
-    seen_area = np.zeros(len(thing))
-    index = np.where(wanted & (thing < flat), thing, 0)
+    shines[emitters(scene)] = True
+    wanted = (primitive >= 0) & shines[primitive]
+    seen_area = np.zeros(len(primitive))
+    index = np.where(wanted & (primitive < flat), primitive, 0)
     seen_area[wanted] = -np.einsum("ni,ni->n", wi, cross[index])[wanted]
     wanted &= seen_area > 0
     return (
@@ -43,21 +43,21 @@ def mis_weight(pdf, other):
 
 def direct_light(scene, hit, u_light, u_surface, proposal=None):
     chooser = proposal or scene
-    sent = np.zeros((len(hit["thing"]), 3))
+    sent = np.zeros((len(hit["primitive"]), 3))
 
     def add(rows, wi, there, numerator, denominator):
-        part, seen = some(hit, rows), some(there, rows)
+        part, seen = take(hit, rows), take(there, rows)
         c = dot(part["normals"], wi[rows])
         weight = mis_weight(numerator[rows], denominator[rows]) * c / numerator[rows]
         sent[rows] += brdf(scene, part, wi[rows]) * emitted(scene, seen) * weight[:, None]
 
-    wi, _, lamp = sample_light(chooser, hit["points"], u_light)
-    there = see(scene, hit["points"], wi)
-    p, q = light_pdf(chooser, there["thing"], wi, there["t"]), brdf_pdf(chooser, hit, wi)
-    add(np.flatnonzero((there["thing"] == lamp) & (p > 0) & (q > 0)), wi, there, p, q)
+    wi, _, light = sample_light(chooser, hit["points"], u_light)
+    there = closest_hit(scene, hit["points"], wi)
+    p, q = light_pdf(chooser, there["primitive"], wi, there["t"]), brdf_pdf(chooser, hit, wi)
+    add(np.flatnonzero((there["primitive"] == light) & (p > 0) & (q > 0)), wi, there, p, q)
     wi = sample_brdf(chooser, hit, u_surface)
-    there = see(scene, hit["points"], wi)
-    p, q = light_pdf(chooser, there["thing"], wi, there["t"]), brdf_pdf(chooser, hit, wi)
+    there = closest_hit(scene, hit["points"], wi)
+    p, q = light_pdf(chooser, there["primitive"], wi, there["t"]), brdf_pdf(chooser, hit, wi)
     add(np.flatnonzero((p > 0) & (q > 0)), wi, there, q, p)
     return sent
 
@@ -86,38 +86,38 @@ def trace_paths(scene, origins, directions, depth, rng):
         if bounce >= ALWAYS:
             beta, alive = roulette(beta, rng.random(n))
             good &= alive
-        there = see(scene, hit["points"], wi)
-        good &= there["thing"] >= 0
-        total[good] += arriving(some(there, good), beta[good], bounce + 1)
+        there = closest_hit(scene, hit["points"], wi)
+        good &= there["primitive"] >= 0
+        total[good] += arriving(take(there, good), beta[good], bounce + 1)
         return total
 
-    first = see(scene, origins, directions)
+    first = closest_hit(scene, origins, directions)
     result = emitted(scene, first)
-    met = first["thing"] >= 0
-    result[met] += arriving(some(first, met), np.ones((met.sum(), 3)), 0)
+    met = first["primitive"] >= 0
+    result[met] += arriving(take(first, met), np.ones((met.sum(), 3)), 0)
     return result
 
 
 def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
-    colors, roughs, things = [], [], []
+    colors, roughs, primitives = [], [], []
 
     def add(rows, wi, there, numerator, denominator):
-        part, seen = some(hit, rows), some(there, rows)
+        part, seen = take(hit, rows), take(there, rows)
         c = dot(part["normals"], wi[rows])
         weight = mis_weight(numerator[rows], denominator[rows]) * c / numerator[rows]
         pull = d_radiance[rows] * emitted(scene, seen) * weight[:, None]
         by_color, by_roughness = brdf_backward(scene, part, wi[rows], pull)
         colors.append(by_color)
         roughs.append(by_roughness)
-        things.append(part["thing"])
+        primitives.append(part["primitive"])
 
-    wi, _, lamp = sample_light(scene, hit["points"], u_light)
-    there = see(scene, hit["points"], wi)
-    p, q = light_pdf(scene, there["thing"], wi, there["t"]), brdf_pdf(scene, hit, wi)
-    add(np.flatnonzero((there["thing"] == lamp) & (p > 0) & (q > 0)), wi, there, p, q)
+    wi, _, light = sample_light(scene, hit["points"], u_light)
+    there = closest_hit(scene, hit["points"], wi)
+    p, q = light_pdf(scene, there["primitive"], wi, there["t"]), brdf_pdf(scene, hit, wi)
+    add(np.flatnonzero((there["primitive"] == light) & (p > 0) & (q > 0)), wi, there, p, q)
     wi = sample_brdf(scene, hit, u_surface)
-    there = see(scene, hit["points"], wi)
-    p, q = light_pdf(scene, there["thing"], wi, there["t"]), brdf_pdf(scene, hit, wi)
+    there = closest_hit(scene, hit["points"], wi)
+    p, q = light_pdf(scene, there["primitive"], wi, there["t"]), brdf_pdf(scene, hit, wi)
     add(np.flatnonzero((p > 0) & (q > 0)), wi, there, q, p)
-    belongs = np.arange(len(scene["matte"]))[:, None] == np.concatenate(things)
+    belongs = np.arange(len(scene["matte"]))[:, None] == np.concatenate(primitives)
     return belongs @ np.concatenate(colors), belongs @ np.concatenate(roughs)

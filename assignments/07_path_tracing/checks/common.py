@@ -19,9 +19,9 @@ def scene_of(flat, balls=()):
 
     Materials are dicts; the default is gray and matte.
     """
-    given = [thing[-1] for thing in (*flat, *balls)]
+    given = [primitive[-1] for primitive in (*flat, *balls)]
     scene = {
-        name: np.array([thing[k] for thing in flat], float).reshape(-1, 3)
+        name: np.array([primitive[k] for primitive in flat], float).reshape(-1, 3)
         for k, name in enumerate(("corners", "edges_u", "edges_v"))
     }
     scene["balls"] = np.array([[*each[0], each[1]] for each in balls], float).reshape(-1, 4)
@@ -51,7 +51,7 @@ def flake(**material):
     return ((50, 50, 50), (0.1, 0, 0), (0, 0.1, 0), material)
 
 
-def hit_at(points, wo, thing):
+def hit_at(points, wo, primitive):
     """Points on a surface that faces up."""
     n = len(points)
     return {
@@ -60,7 +60,7 @@ def hit_at(points, wo, thing):
         "wo": np.asarray(wo, float),
         "front": np.ones(n, bool),
         "t": np.ones(n),
-        "thing": np.broadcast_to(np.asarray(thing, np.int64), (n,)).copy(),
+        "primitive": np.broadcast_to(np.asarray(primitive, np.int64), (n,)).copy(),
     }
 
 
@@ -131,7 +131,7 @@ def require_mean(t, what, draw, right, mistakes=(), hint=""):
 
 
 def direct(t, scene, hit, u=None, proposal=None):
-    n = len(hit["thing"])
+    n = len(hit["primitive"])
     u = t.rng.random((2, n, 3)) if u is None else u
     more = () if proposal is None else (proposal,)
     return t.call("direct_light", scene, hit, u[0], u[1], *more, returns=Array((n, 3)))

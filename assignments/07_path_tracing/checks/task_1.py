@@ -36,16 +36,16 @@ def solid_angle(corners):
     return total
 
 
-def density(t, scene, thing, wi, distance):
-    return t.call("light_pdf", scene, thing, wi, distance, returns=Array((len(thing),)))
+def density(t, scene, primitive, wi, distance):
+    return t.call("light_pdf", scene, primitive, wi, distance, returns=Array((len(primitive),)))
 
 
-def towards(scene, thing, point, uv):
+def towards(scene, primitive, point, uv):
     """(wi, distance) from a point to points (n, 2) of a rectangle."""
     place = (
-        scene["corners"][thing]
-        + uv[:, :1] * scene["edges_u"][thing]
-        + (uv[:, 1:] * scene["edges_v"][thing])
+        scene["corners"][primitive]
+        + uv[:, :1] * scene["edges_u"][primitive]
+        + (uv[:, 1:] * scene["edges_v"][primitive])
     )
     far = np.linalg.norm(place - point, axis=1)
     return (place - point) / far[:, None], far
@@ -65,9 +65,9 @@ def straight_below(t):
     """Straight below the center of one of K lights: distance squared over K times its area."""
     for count in (1, 3):
         a, b, h = t.rng.uniform(0.2, 1.0, 3)
-        lamp = ((-a, h, -b), (2 * a, 0, 0), (0, 0, 2 * b), {"emission": 2.0})
+        light = ((-a, h, -b), (2 * a, 0, 0), (0, 0, 2 * b), {"emission": 2.0})
         others = [((9, k, 0), (0, 1.5, 0), (0, 0, 1), {"emission": 1.0}) for k in range(count - 1)]
-        scene = scene_of([*others, lamp, flake()])
+        scene = scene_of([*others, light, flake()])
         got = density(t, scene, np.array([count - 1]), UP[None], np.array([h]))
         t.close("density", got, [h * h / (4 * a * b * count)], reveal=True)
 
@@ -110,10 +110,10 @@ def no_density_without_a_lamp(t):
     turn = t.rng.uniform(0.5, 2.0)
     flat = [flake(), ((0, 1, 0), (1, 0, 0), (0, 0, turn), {"emission": [0, 0, 1]}), flake()]
     scene = scene_of(flat, [((0, 3, 0), 1, {})])
-    thing = np.array([1, 0, -1, 3, 1, 1, 2])
+    primitive = np.array([1, 0, -1, 3, 1, 1, 2])
     wi = np.array([UP, [0, 0, -1], UP, UP, -UP, [1.0, 0, 0], [0, 0.6, -0.8]])
     far = np.array([1.0, 1, np.inf, 2, 1, 3, 1])
-    got = density(t, scene, thing, wi, far)
+    got = density(t, scene, primitive, wi, far)
     t.require(bool(got[0] > 0), "the front of a light has a density above 0")
     told = (
         "",
@@ -124,5 +124,5 @@ def no_density_without_a_lamp(t):
         "the edge of a light",
         "a wall",
     )
-    for k in range(1, len(thing)):
+    for k in range(1, len(primitive)):
         t.require(bool(got[k] == 0), f"{told[k]} must have density 0, exactly")

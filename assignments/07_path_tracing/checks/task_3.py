@@ -32,9 +32,9 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
     point = t.rng.uniform(-1, 1, 3)
     aside = t.rng.uniform(-0.1, 0.1, 2) * size
     middle = point + np.array([aside[0], height, aside[1]])
-    lamp = (middle - np.array([size / 2, 0, size / 2]), [size, 0, 0], [0, 0, size])
-    scene = scene_of([flake(base_color=color), (*lamp, {"emission": shine})])
-    right = color / np.pi * irradiance(corners_of(*lamp) - point) * shine
+    light = (middle - np.array([size / 2, 0, size / 2]), [size, 0, 0], [0, 0, size])
+    scene = scene_of([flake(base_color=color), (*light, {"emission": shine})])
+    right = color / np.pi * irradiance(corners_of(*light) - point) * shine
     return scene, hit_at(np.tile(point, (n, 1)), ways(t.rng, n), 0), right
 
 
@@ -111,22 +111,22 @@ def no_light_arrives(t):
     """A light behind a wall, ball or light, below the horizon or seen from behind: exactly 0."""
     n, x = 60, float(t.rng.uniform(0.5, 1.0))
     glossy = flake(base_color=0.8, metalness=0.5, roughness=0.6)
-    lamp = ((-x, 2, -x), (2 * x, 0, 0), (0, 0, 2 * x), {"emission": 3.0})
+    light = ((-x, 2, -x), (2 * x, 0, 0), (0, 0, 2 * x), {"emission": 3.0})
     hit = hit_at(np.zeros((n, 3)), ways(t.rng, n), 0)
-    got = direct(t, scene_of([glossy, lamp]), hit)
+    got = direct(t, scene_of([glossy, light]), hit)
     t.require(bool((got.sum(axis=1) > 0).mean() > 0.5), "below a light there must be light")
     wall = ((-3, 1, -3), (6, 0, 0), (0, 0, 6), {})
-    back = (lamp[0], lamp[2], lamp[1], lamp[3])
-    below = ((-x, -2, -x), lamp[2], lamp[1], lamp[3])
+    back = (light[0], light[2], light[1], light[3])
+    below = ((-x, -2, -x), light[2], light[1], light[3])
     for told, scene in (
-        ("a wall in between", scene_of([glossy, lamp, wall])),
-        ("a ball in between", scene_of([glossy, lamp], [((0, 1.02, 0), 1.0, {})])),
+        ("a wall in between", scene_of([glossy, light, wall])),
+        ("a ball in between", scene_of([glossy, light], [((0, 1.02, 0), 1.0, {})])),
         ("a light seen from behind", scene_of([glossy, back])),
         ("a light below the surface", scene_of([glossy, below])),
     ):
         got = direct(t, scene, hit)
         t.require(not got.any(), f"{told}: no light arrives, but yours is {got.max():.3g}")
-    scene = scene_of([glossy, lamp, (*wall[:3], {"emission": 1.0})])
+    scene = scene_of([glossy, light, (*wall[:3], {"emission": 1.0})])
     got = direct(t, scene, hit, all_draw(t, n, 0.9))
     t.require(bool(got.any(axis=1).all()), "two lights: the nearer one, if sampled, contributes")
     got = direct(t, scene, hit, all_draw(t, n, 0.1))

@@ -99,15 +99,15 @@ def depth_two(t):
         mistakes,
     )
     point, size = t.rng.uniform(-0.1, 0.1, 3), t.rng.uniform(0.8, 1.2)
-    lamp = (point + np.array([0.5, 0.05, -1]), [0, 0, 2], [0, size, 0])
+    light = (point + np.array([0.5, 0.05, -1]), [0, 0, 2], [0, size, 0])
     scene = scene_of(
         [
             (point - np.array([0.2, 0, 0.2]), [0, 0, 0.4], [0.4, 0, 0], {"base_color": color}),
-            (*lamp, {"emission": shine, "base_color": 0.0}),
+            (*light, {"emission": shine, "base_color": 0.0}),
             flake(base_color=0.9),
         ]
     )
-    right = color / np.pi * irradiance(corners_of(*lamp) - point) * shine
+    right = color / np.pi * irradiance(corners_of(*light) - point) * shine
     wo = ways(t.rng, 1000, 0.4)
     for depth in (2, 4):
         require_mean(
@@ -132,17 +132,17 @@ def depth_two(t):
 def around_a_corner(t):
     """A floor that sees the back of a light, and a wall that the light lights: three segments."""
     floor, wall, shine = t.rng.uniform(0.3, 0.6, 3), t.rng.uniform(0.4, 0.9, 3), 5.0
-    lamp = ((0.4, 1.3, -0.4), (0, 0.6, 0), (0, 0, 0.8))
+    light = ((0.4, 1.3, -0.4), (0, 0.6, 0), (0, 0, 0.8))
     scene = scene_of(
         [
             ((-0.1, 0, -0.1), (0, 0, 0.2), (0.2, 0, 0), {"base_color": floor}),
             ((1, 0, -1), (0, 0, 2), (0, 1, 0), {"base_color": wall}),
-            (*lamp, {"emission": shine, "base_color": 0.0}),
+            (*light, {"emission": shine, "base_color": 0.0}),
         ]
     )
     uv, weights = nodes(10)
     places = np.column_stack([np.ones(100), uv[:, 0], 2 * uv[:, 1] - 1])
-    lit = [irradiance(corners_of(*lamp) - place, np.array([-1.0, 0, 0])) for place in places]
+    lit = [irradiance(corners_of(*light) - place, np.array([-1.0, 0, 0])) for place in places]
     share = 2 * places[:, 1] / np.sum(places**2, axis=1) ** 2  # cosines, area, distance squared
     right = floor * wall / np.pi**2 * shine * (weights * share @ np.array(lit))
     wo = ways(t.rng, 3000, 0.4)

@@ -30,9 +30,11 @@ GATE = Tolerance(
 
 
 def slopes(t, scene, hit, d, u=None):
-    n, things = len(hit["thing"]), len(scene["matte"])
+    n, primitives = len(hit["primitive"]), len(scene["matte"])
     u = t.rng.random((2, n, 3)) if u is None else u
-    parts = Items(Array((things, 3)), Array((things,)), names=("d_base_color", "d_roughness"))
+    parts = Items(
+        Array((primitives, 3)), Array((primitives,)), names=("d_base_color", "d_roughness")
+    )
     got = t.call("direct_light_backward", scene, hit, u[0], u[1], d, returns=parts)
     return {"base_color": got[0], "roughness": got[1]}
 
@@ -47,8 +49,8 @@ def small_scene(t, n):
         }
         for _ in range(2)
     ]
-    lamp = ((-0.6, 0.9, -0.6), (1.2, 0, 0), (0, 0, 1.2), {"emission": t.rng.uniform(1, 3, 3)})
-    scene = scene_of([flake(**glossy[0]), lamp, flake(**glossy[1])])
+    light = ((-0.6, 0.9, -0.6), (1.2, 0, 0), (0, 0, 1.2), {"emission": t.rng.uniform(1, 3, 3)})
+    scene = scene_of([flake(**glossy[0]), light, flake(**glossy[1])])
     points = np.column_stack(
         [t.rng.uniform(-0.4, 0.4, n), np.zeros(n), t.rng.uniform(-0.4, 0.4, n)]
     )
@@ -75,7 +77,7 @@ def the_gradient_agrees_with_differences(t):
 
 
 ROWS = (
-    "a primitive has many rows, which must be summed; d[things] += rows keeps only "
+    "a primitive has many rows, which must be summed; d[primitives] += rows keeps only "
     "the last row of each: see np.add.at"
 )
 
@@ -143,7 +145,7 @@ def the_mean_of_the_gradient(t):
     ):
         copies = np.repeat(scene[name][6:7], groups - 1, axis=0)
         scene[name] = np.concatenate([scene[name], copies])
-    hit["thing"] = 6 + np.arange(groups * each) % groups
+    hit["primitive"] = 6 + np.arange(groups * each) % groups
     g = t.rng.uniform(0.3, 1.0, 3)
     eps, right = 1e-4, []
     for name, channel in (("base_color", 0), ("base_color", 2), ("roughness", None)):
@@ -170,8 +172,8 @@ def the_mean_of_the_gradient(t):
 def the_gradient_is_cheap(t):
     """A scene of 100 primitives: the gradient costs at most 20 times as much as direct light."""
     scene, hit = small_scene(t, 30)
-    things = [flake(base_color=0.5, roughness=0.5, metalness=0.5)] * 97
-    more = scene_of(things)
+    primitives = [flake(base_color=0.5, roughness=0.5, metalness=0.5)] * 97
+    more = scene_of(primitives)
     scene = {name: np.concatenate([scene[name], more[name]]) for name in scene}
     u, d = t.rng.random((2, 30, 3)), random_cotangent(t.rng, (30, 3))
     n = len(scene["matte"])

@@ -112,9 +112,9 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
         d_xy = -(2 * A * B * d_A + (A * C + B * B) * d_B + 2 * B * C * d_C)
         d_yy = -(B * B * d_A + B * C * d_B + C * C * d_C)
         d_mean2d = np.stack([along_x.sum(axis=1), along_y.sum(axis=1)], axis=1)
-        pull = np.stack([abs(along_x).sum(axis=1), abs(along_y).sum(axis=1)], axis=1)
+        absgrad = np.stack([abs(along_x).sum(axis=1), abs(along_y).sum(axis=1)], axis=1)
         d_logits = -d_sigma.sum(axis=1) * (1 - opacity)
-        return d_mean2d, np.stack([d_xx, d_xy, d_yy], axis=1), d_logits, pull
+        return d_mean2d, np.stack([d_xx, d_xy, d_yy], axis=1), d_logits, absgrad
 
     return alpha, back
 
@@ -157,10 +157,10 @@ def render(gaussians, camera, pixels, background):
 
     def back(d_shown):
         d_alpha, d_colors, d_background = of_blend(d_shown)
-        d_mean2d, d_cov2d, d_logits, pull = of_alpha(d_alpha)
+        d_mean2d, d_cov2d, d_logits, absgrad = of_alpha(d_alpha)
         d_means, d_cov = of_lens(d_mean2d, d_cov2d)
         d_quats, d_log_scales = of_shape(d_cov)
-        columns = [d_means, d_log_scales, d_quats, d_logits[:, None], d_colors, pull]
+        columns = [d_means, d_log_scales, d_quats, d_logits[:, None], d_colors, absgrad]
         table = np.zeros((len(gaussians["means"]), 16))
         table[index] = np.concatenate(columns, axis=1)
         return {
@@ -169,22 +169,22 @@ def render(gaussians, camera, pixels, background):
             "quats": table[:, 6:10],
             "opacity_logits": table[:, 10],
             "colors": table[:, 11:14],
-            "pull": table[:, 14:],
+            "absgrad": table[:, 14:],
             "background": d_background,
         }
 
     return shown, back
 
 
-def densify(gaussians, pressure, rng, most):
+def densify(gaussians, grad2d, rng, max_count):
     """Clone, split and drop Gaussians: masks, ranks by counting, a Cholesky factor by entries."""
     a = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
     alive = a >= FAINT
-    asks = alive & (pressure > THRESHOLD)
+    asks = alive & (grad2d > THRESHOLD)
     number = np.arange(len(a))
-    before = pressure[:, None] > pressure
-    before |= (pressure[:, None] == pressure) & (number[:, None] < number)
-    chosen = asks & (np.sum(before & asks[:, None], axis=0) < most - np.sum(alive))
+    before = grad2d[:, None] > grad2d
+    before |= (grad2d[:, None] == grad2d) & (number[:, None] < number)
+    chosen = asks & (np.sum(before & asks[:, None], axis=0) < max_count - np.sum(alive))
     long = np.any(np.exp(gaussians["log_scales"]) > SMALL, axis=1)
     masks = [alive & ~(chosen & long), chosen & ~long, chosen & long, chosen & long]
     rows = np.nonzero(np.stack(masks))[1]

@@ -125,7 +125,7 @@ def render(gaussians, camera, pixels, background):
 
     def back(d_shown):
         d_alpha, d_colors, d_background = from_shown(d_shown)
-        *d_on_screen, d_logits, pull = from_alpha(d_alpha)
+        *d_on_screen, d_logits, absgrad = from_alpha(d_alpha)
         d_means, d_shapes = from_screen(*d_on_screen)
         d_quats, d_log_scales = from_shapes(d_shapes)
         return {
@@ -135,19 +135,19 @@ def render(gaussians, camera, pixels, background):
             "opacity_logits": d_logits,
             "colors": d_colors,
             "background": d_background,
-            "pull": pull,
+            "absgrad": absgrad,
         }
 
     return shown, back
 
 
-def densify(gaussians, pressure, rng, most):
+def densify(gaussians, grad2d, rng, max_count):
     """Clone, split and drop Gaussians: sets of rows, and a scene in four parts."""
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
     alive = np.flatnonzero(opacity >= FAINT)
-    asking = alive[pressure[alive] > THRESHOLD]
-    first = asking[np.lexsort((asking, -pressure[asking]))]
-    first = first[: max(0, most - alive.size)]
+    asking = alive[grad2d[alive] > THRESHOLD]
+    first = asking[np.lexsort((asking, -grad2d[asking]))]
+    first = first[: max(0, max_count - alive.size)]
     longest = np.exp(np.max(gaussians["log_scales"], axis=1))
     split = np.sort(first[longest[first] > SMALL])
     clone = np.setdiff1d(first, split)

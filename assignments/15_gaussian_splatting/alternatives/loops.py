@@ -109,18 +109,18 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
 
     def back(d_alpha):
         d_mean2d, d_cov2d = np.zeros((N, 2)), np.zeros((N, 3))
-        d_logits, pull = np.zeros(N), np.zeros((N, 2))
+        d_logits, absgrad = np.zeros(N), np.zeros((N, 2))
         for i in range(N):
             conic, d, o, G, moves = kept[i]
             d_raw = d_alpha[i] * moves
             d_logits[i] = np.sum(d_raw * G) * o * (1 - o)
             d_sigma = -d_raw * o * G
             each = d_sigma[:, None] * (d @ conic)
-            d_mean2d[i], pull[i] = each.sum(axis=0), np.abs(each).sum(axis=0)
+            d_mean2d[i], absgrad[i] = each.sum(axis=0), np.abs(each).sum(axis=0)
             d_conic = 0.5 * np.einsum("p,pi,pj->ij", d_sigma, d, d)
             d_full = -conic @ d_conic @ conic
             d_cov2d[i] = d_full[0, 0], d_full[0, 1] + d_full[1, 0], d_full[1, 1]
-        return d_mean2d, d_cov2d, d_logits, pull
+        return d_mean2d, d_cov2d, d_logits, absgrad
 
     return alpha, back
 
@@ -157,9 +157,9 @@ def render(gaussians, camera, pixels, background):
 
     def back(d_shown):
         out = {key: np.zeros_like(value) for key, value in gaussians.items()}
-        out["pull"] = np.zeros((len(gaussians["means"]), 2))
+        out["absgrad"] = np.zeros((len(gaussians["means"]), 2))
         d_alpha, out["colors"][index], d_background = back4(d_shown)
-        d_mean2d, d_cov2d, out["opacity_logits"][index], out["pull"][index] = back3(d_alpha)
+        d_mean2d, d_cov2d, out["opacity_logits"][index], out["absgrad"][index] = back3(d_alpha)
         out["means"][index], d_cov = back2(d_mean2d, d_cov2d)
         out["quats"][index], out["log_scales"][index] = back1(d_cov)
         out["background"] = d_background
@@ -168,12 +168,12 @@ def render(gaussians, camera, pixels, background):
     return shown, back
 
 
-def densify(gaussians, pressure, rng, most):
+def densify(gaussians, grad2d, rng, max_count):
     """Clone, split and drop Gaussians."""
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
     alive = [i for i in range(len(opacity)) if opacity[i] >= FAINT]
-    wanted = sorted((i for i in alive if pressure[i] > THRESHOLD), key=lambda i: -pressure[i])
-    wanted = sorted(wanted[: max(most - len(alive), 0)])
+    wanted = sorted((i for i in alive if grad2d[i] > THRESHOLD), key=lambda i: -grad2d[i])
+    wanted = sorted(wanted[: max(max_count - len(alive), 0)])
     long = [i for i in wanted if np.exp(gaussians["log_scales"][i]).max() > SMALL]
     short = [i for i in wanted if i not in long]
     stay = [i for i in alive if i not in long]

@@ -26,7 +26,7 @@ def taken_back(t, m, s, o, pixels, g):
         Array(s.shape),
         Array(o.shape),
         Array(m.shape),
-        names=("d_mean2d", "d_cov2d", "d_opacity_logits", "pull"),
+        names=("d_mean2d", "d_cov2d", "d_opacity_logits", "absgrad"),
     )
     return t.call("adapters.screen_alpha_back", m, s, o, pixels, g, returns=parts)
 
@@ -93,8 +93,13 @@ def cut_offs(t):
         pixel = m + np.array([np.sqrt(2 * 4.3 * np.log(o / alpha)), 0.0])
         got = taken(t, m, s, np.array([logit]), pixel)
         t.close(f"alpha where o G = {alpha}", got, [[expected]], reveal=True)
-        d_m, d_s, d_o, pull = taken_back(t, m, s, np.array([logit]), pixel, np.ones((1, 1)))
-        for name, d in (("mean2d", d_m), ("cov2d", d_s), ("opacity_logits", d_o), ("pull", pull)):
+        d_m, d_s, d_o, absgrad = taken_back(t, m, s, np.array([logit]), pixel, np.ones((1, 1)))
+        for name, d in (
+            ("mean2d", d_m),
+            ("cov2d", d_s),
+            ("opacity_logits", d_o),
+            ("absgrad", absgrad),
+        ):
             moves = bool(d.any())
             t.require(
                 moves == (alpha == expected),
@@ -126,7 +131,7 @@ def alpha_agrees_with_differences(t):
     agrees_with_finite_differences(
         t, found, forward, {"mean2d": m, "cov2d": s, "opacity_logits": o}, g, GATE
     )
-    names = ("mean2d", "cov2d", "opacity_logits", "pull")
+    names = ("mean2d", "cov2d", "opacity_logits", "absgrad")
     require_zero_for_zero(t, dict(zip(names, taken_back(t, m, s, o, pixels, 0 * g), strict=True)))
 
 
@@ -138,10 +143,10 @@ def alpha_agrees_with_differences(t):
     sole="tests pull only",
 )
 def pull_does_not_cancel(t):
-    """pull is the sum over pixels of the size of what each alone adds to d_mean2d."""
+    """absgrad is the sum over pixels of the size of what each alone adds to d_mean2d."""
     m, s, o, pixels = wide_splats(t.rng, 3, 5)
     g = random_cotangent(t.rng, (3, 5))
-    d_m, _, _, pull = taken_back(t, m, s, o, pixels, g)
+    d_m, _, _, absgrad = taken_back(t, m, s, o, pixels, g)
     alone = [taken_back(t, m, s, o, pixels[k : k + 1], g[:, k : k + 1])[0] for k in range(5)]
     t.close("the sum of single pixels", np.sum(alone, axis=0), d_m)
-    t.close("pull", pull, np.sum(np.abs(alone), axis=0))
+    t.close("absgrad", absgrad, np.sum(np.abs(alone), axis=0))

@@ -23,7 +23,7 @@ def shown_back(t, scene, camera, pixels, b, g):
     """Result of the `back` of `render`."""
     shapes_of = {name: Array(array.shape) for name, array in scene.items()}
     record = Record(
-        {**shapes_of, "background": Array((3,)), "pull": Array((len(scene["means"]), 2))}
+        {**shapes_of, "background": Array((3,)), "absgrad": Array((len(scene["means"]), 2))}
     )
     return t.call("adapters.render_back", scene, camera, pixels, b, g, returns=record)
 
@@ -102,7 +102,7 @@ def what_is_behind_the_camera_has_no_part(t):
     t.close("shown", shown(t, scene, camera, pixels, b), shown(t, few, camera, pixels, b))
     got = shown_back(t, scene, camera, pixels, b, g)
     right = shown_back(t, few, camera, pixels, b, g)
-    for name in (*SCENE, "pull"):
+    for name in (*SCENE, "absgrad"):
         t.require(not got[name][hidden].any(), f"d_{name}: not zero behind the camera")
         t.close(f"d_{name} of the others", got[name][kept], right[name])
     t.close("d_background", got["background"], right["background"])

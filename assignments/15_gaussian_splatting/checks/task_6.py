@@ -8,15 +8,15 @@ from .common import EXACT, SCENE, spread
 check = checks_for(calls=("densify",), needs=("covariance",), tolerance=EXACT)
 
 
-def denser(t, scene, pressure, seed, most, count, adapter="densify"):
+def denser(t, scene, grad2d, seed, max_count, count, adapter="densify"):
     """Result of `densify`, as a dict and the sources."""
     parts = [Array((count, *scene[name].shape[1:])) for name in SCENE]
     got = t.call(
         f"adapters.{adapter}",
         scene,
-        pressure,
+        grad2d,
         seed,
-        most,
+        max_count,
         returns=Items(*parts, Array((count,)), names=(*SCENE, "source")),
     )
     return dict(zip(SCENE, got[:5], strict=True)), got[5]
@@ -46,13 +46,13 @@ def eight(rng):
 )
 def who_stays_and_who_is_new(t):
     """Pruned ones go, small chosen ones are cloned, large chosen ones split, in a fixed order."""
-    scene, pressure = eight(t.rng)
-    got, source = denser(t, scene, pressure, 1, 100, 10)
+    scene, grad2d = eight(t.rng)
+    got, source = denser(t, scene, grad2d, 1, 100, 10)
     rows = [1, 3, 5, 6, 1, 5, 2, 7, 2, 7]
     t.close("colors", got["colors"], scene["colors"][rows], reveal=True)
     t.close("quats", got["quats"], scene["quats"][rows])
     t.close("source", source, [1, 3, 5, 6, -1, -1, -1, -1, -1, -1], reveal=True)
-    again = denser(t, scene, pressure, 1, 100, 10, adapter="densify_again")
+    again = denser(t, scene, grad2d, 1, 100, 10, adapter="densify_again")
     t.require(agree(again, (got, source)), "densify has written into an array that it was given")
 
 
@@ -65,9 +65,9 @@ def who_stays_and_who_is_new(t):
 )
 def clones_keep_the_middle_and_parts_are_drawn(t):
     """Two clones cover as one did; parts are smaller by 1.6, at points drawn from the whole."""
-    scene, pressure = eight(t.rng)
+    scene, grad2d = eight(t.rng)
     seed = int(t.rng.integers(1 << 20))
-    got, _ = denser(t, scene, pressure, seed, 100, 10)
+    got, _ = denser(t, scene, grad2d, seed, 100, 10)
     rows, new = [1, 3, 5, 6, 1, 5, 2, 7, 2, 7], [6, 7, 8, 9]
     through = 1 / (1 + np.exp(got["opacity_logits"]))
     before = 1 / (1 + np.exp(scene["opacity_logits"][rows]))
@@ -98,16 +98,16 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
     "15.6.most",
     points=1,
     hint="each chosen one makes one more; the highest statistics go first. Faint ones leave "
-    "first: room is `most` minus the number that stay",
+    "first: room is `max_count` minus the number that stay",
     sole="tests the budget only",
 )
 def never_more_than_most(t):
     """With room for two more, the two of the highest statistics are chosen; without, none."""
-    scene, pressure = eight(t.rng)
-    got, source = denser(t, scene, pressure, 1, 8, 8)
+    scene, grad2d = eight(t.rng)
+    got, source = denser(t, scene, grad2d, 1, 8, 8)
     t.close("colors", got["colors"], scene["colors"][[1, 3, 5, 6, 7, 5, 2, 2]], reveal=True)
     t.close("source", source, [1, 3, 5, 6, 7, -1, -1, -1], reveal=True)
-    got, source = denser(t, scene, pressure, 1, 5, 6)
+    got, source = denser(t, scene, grad2d, 1, 5, 6)
     t.close("source without room", source, [1, 2, 3, 5, 6, 7], reveal=True)
     t.close(
         "logits without room", got["opacity_logits"], scene["opacity_logits"][[1, 2, 3, 5, 6, 7]]

@@ -54,7 +54,7 @@ def place_of_the_handout():
     hit = {
         "points": np.zeros((1, 3)),
         "normals": np.array([[0, 1.0, 0]]),
-        "thing": np.array([0]),
+        "primitive": np.array([0]),
         "wo": np.array([[0, 0.8, 0.6]]),
         "front": np.array([True]),
         "t": np.ones(1),
@@ -86,8 +86,8 @@ def test_numbers_of_the_warm_up(solution) -> None:
 
 
 def test_check_values_of_densities_weights_and_roulette(solution) -> None:
-    lamp = solution.rectangle([-0.5, 2, -0.25], [1, 0, 0], [0, 0, 0.5], emission=1)
-    scene = solution.assemble([lamp])
+    light = solution.rectangle([-0.5, 2, -0.25], [1, 0, 0], [0, 0, 0.5], emission=1)
+    scene = solution.assemble([light])
     for aside, right in ((0.0, 8), (1.5, 15.625)):
         to = np.array([[-aside, 2.0, 0]])
         far = np.linalg.norm(to, axis=1)
@@ -103,16 +103,16 @@ def test_check_values_of_densities_weights_and_roulette(solution) -> None:
 def test_check_values_of_direct_light_and_its_gradient(solution) -> None:
     scene = solution.demo_table()
     hit, u, found, nothing = place_of_the_handout()
-    wi, far, thing = solution.sample_light(scene, hit["points"], u)
+    wi, far, primitive = solution.sample_light(scene, hit["points"], u)
     close(wi, [-0.232810, 0.721711, -0.651868])
-    p, q = solution.light_pdf(scene, thing, wi, far), solution.brdf_pdf(scene, hit, wi)
+    p, q = solution.light_pdf(scene, primitive, wi, far), solution.brdf_pdf(scene, hit, wi)
     close([far, p, q, solution.mis_weight(p, q)], [1.073837, 1.876163, 0.614065, 0.903241])
     close(solution.brdf(scene, hit, wi), [0.701698, 0.449226, 0.196754])
     wi = solution.sample_brdf(scene, hit, found)
     close(wi, [-0.106106, 0.775248, -0.622681])
-    there = solution.see(scene, hit["points"], wi)
+    there = solution.closest_hit(scene, hit["points"], wi)
     q = solution.brdf_pdf(scene, hit, wi)
-    p = solution.light_pdf(scene, there["thing"], wi, there["t"])
+    p = solution.light_pdf(scene, there["primitive"], wi, there["t"])
     close([q, p, solution.mis_weight(q, p)], [2.050804, 1.815058, 0.560755])
     for us, light, color, rough in (
         (found, [4.269358, 2.282379, 0.805568], [5.101676, -2.125698, 6.802235], -14.055644),
@@ -196,8 +196,8 @@ def test_the_kit_runs_without_the_solution() -> None:
     """What is given works before anything is written: a student can look at a scene first."""
     module = loaded(strip_solution(source(FOLDER)))
     scene = module.demo_room()
-    hit = module.see(scene, *module.camera_rays(8, 6, [0, 1, 3.4], [0, 1, 0], 38))
-    assert {5, 7} <= set(hit["thing"])
+    hit = module.closest_hit(scene, *module.camera_rays(8, 6, [0, 1, 3.4], [0, 1, 0], 38))
+    assert {5, 7} <= set(hit["primitive"])
     with pytest.raises(NotImplementedError):
         module.mis_weight(np.ones(1), np.ones(1))
 
@@ -214,7 +214,7 @@ def test_the_shipped_answers_are_the_core_s(solution) -> None:
     table = solution.demo_table()
     parts = [
         shapes.rectangle(
-            f"thing{k}",
+            f"primitive{k}",
             table["corners"][k],
             table["edges_u"][k],
             table["edges_v"][k],

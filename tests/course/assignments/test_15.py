@@ -108,7 +108,7 @@ def test_check_values_of_the_chain_and_of_densify(solution: ModuleType) -> None:
     got = back(np.array([[1.0, 0, 0]]))
     printed(got["means"], [-0.285734, 0.089337, 0.001762])
     printed(got["log_scales"], [0.022767, 0.002226, 0.000057])
-    printed(got["pull"], [0.011452, 0.004476])
+    printed(got["absgrad"], [0.011452, 0.004476])
     four = {
         "means": np.zeros((4, 3)),
         "log_scales": np.repeat([[-4.0], [-2], [-2], [-2]], 3, axis=1),
@@ -116,8 +116,8 @@ def test_check_values_of_the_chain_and_of_densify(solution: ModuleType) -> None:
         "opacity_logits": np.array([2.0, 2, -5, 2]),
         "colors": np.arange(4.0)[:, None] * np.ones(3),
     }
-    pressure = np.array([1.0, 2, 3, 4])
-    after, source = solution.densify(four, pressure, np.random.default_rng(0), 10)
+    grad2d = np.array([1.0, 2, 3, 4])
+    after, source = solution.densify(four, grad2d, np.random.default_rng(0), 10)
     assert after["colors"][:, 0].tolist() == [0, 0, 1, 3, 1, 3]
     assert source.tolist() == [0, -1, -1, -1, -1, -1]
     printed(after["opacity_logits"], [0.639950, 0.639950, 2, 2, 2, 2])
@@ -208,7 +208,7 @@ def test_the_exploration_runs_and_tells_the_two_formulas_apart(tmp_path: Path) -
     assert done.returncode == 0, done.stderr
     with Image.open(tmp_path / "fit.gif") as film:
         assert getattr(film, "n_frames", 1) > 10
-    with Image.open(tmp_path / "pull.png") as image:
+    with Image.open(tmp_path / "absgrad.png") as image:
         assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
     said = done.stdout
     new = float(said.split(" dB on held-out views (an empty scene has ")[0].rsplit(maxsplit=1)[1])

@@ -25,7 +25,7 @@ def direct_light_of_a_room(t):
         "base_color": scene["base_color"] / 2,
     }
     hit = looked_at(t, scene, 300)
-    u = t.rng.random((2, len(hit["thing"]), 3))
+    u = t.rng.random((2, len(hit["primitive"]), 3))
     for proposal in (None, other):
         right = t.reference.direct_light(scene, hit, u[0], u[1], proposal)
         t.close("direct light", direct(t, scene, hit, u, proposal), right)

@@ -29,7 +29,7 @@ def the_gradient_of_a_room(t):
     """A room with two lights, a ball and shadows, compared with the solution."""
     scene = mixed_room(t)
     hit = looked_at(t, scene, 1000)  # fewer: too few BSDF samples hit a light
-    n = len(hit["thing"])
+    n = len(hit["primitive"])
     u, d = t.rng.random((2, n, 3)), random_cotangent(t.rng, (n, 3))
     right = t.reference.direct_light_backward(scene, hit, u[0], u[1], d)
     got = slopes(t, scene, hit, d, u)
@@ -40,9 +40,9 @@ def the_gradient_of_a_room(t):
 def glossy_table(color, metalness, roughness):
     """A table under a light, and the rays of a small image of it."""
     table = ((-1, 0, -1), (0, 0, 2), (2, 0, 0))
-    lamp = ((-0.5, 0.4, -1.0), (1.0, 0, 0), (0, 0.5, 0.4), {"emission": [6, 5, 4]})
+    light = ((-0.5, 0.4, -1.0), (1.0, 0, 0), (0, 0.5, 0.4), {"emission": [6, 5, 4]})
     given = {"base_color": color, "metalness": metalness, "roughness": roughness}
-    return scene_of([(*table, given), lamp])
+    return scene_of([(*table, given), light])
 
 
 @check(
@@ -58,15 +58,15 @@ def a_material_is_recovered(t):
     truth = glossy_table(color, 0.5, roughness)
     start = glossy_table([0.5, 0.5, 0.5], 0.5, 0.6)
     origins, directions = t.reference.camera_rays(10, 7, [0, 0.9, 1.2], [0, 0, -0.3], 45)
-    hit = t.reference.see(truth, origins, directions)
-    seen = hit["thing"] == 0
+    hit = t.reference.closest_hit(truth, origins, directions)
+    seen = hit["primitive"] == 0
     uv, weights = nodes(12)
-    many = t.reference.repeated(t.reference.some(hit, seen), len(uv))
+    many = t.reference.repeated(t.reference.take(hit, seen), len(uv))
     u3 = np.tile(np.column_stack([0 * uv[:, 0], uv]), (int(seen.sum()), 1))
-    wi, far, lamp = t.reference.sample_light(truth, many["points"], u3)
-    pdf = t.reference.light_pdf(truth, lamp, wi, far)
-    light = np.maximum(np.sum(wi * many["normals"], axis=1), 0) / pdf
-    sent = t.reference.brdf(truth, many, wi) * light[:, None] * truth["emission"][1]
+    wi, far, light = t.reference.sample_light(truth, many["points"], u3)
+    pdf = t.reference.light_pdf(truth, light, wi, far)
+    factor = np.maximum(np.sum(wi * many["normals"], axis=1), 0) / pdf
+    sent = t.reference.brdf(truth, many, wi) * factor[:, None] * truth["emission"][1]
     picture = np.zeros((len(seen), 3))
     picture[seen] = np.einsum("nkc,k->nc", sent.reshape(-1, len(uv), 3), weights)
     parts = Items(Array((3,)), Number(), names=("base_color", "roughness"))

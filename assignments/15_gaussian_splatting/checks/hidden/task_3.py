@@ -44,6 +44,6 @@ def random_splats(t):
     alpha, pullback = t.reference.screen_alpha(m, s, o, pixels)
     t.close("alpha", taken(t, m, s, o, pixels), alpha)
     got = taken_back(t, m, s, o, pixels, g)
-    names = ("d_mean2d", "d_cov2d", "d_opacity_logits", "pull")
+    names = ("d_mean2d", "d_cov2d", "d_opacity_logits", "absgrad")
     for name, mine, theirs in zip(names, got, pullback(g), strict=True):
         t.close(name, mine, theirs)

@@ -33,7 +33,7 @@ def crowded(t, n):
 )
 def random_changes(t):
     """Random scenes become what they should."""
-    for most in (1000, 45):
+    for max_count in (1000, 45):
         scene = {
             "means": t.rng.normal(size=(40, 3)),
             "quats": t.rng.normal(size=(40, 4)),
@@ -43,11 +43,11 @@ def random_changes(t):
         }
         # Opacities of 0.0202 and 0.0198, on both sides of FAINT.
         scene["opacity_logits"][:2] = np.log([0.0202 / 0.9798, 0.0198 / 0.9802])
-        pressure, seed = t.rng.exponential(0.003, 40), int(t.rng.integers(1 << 20))
-        pressure = np.array([0.001, 0.003, 0.006])[np.digitize(pressure, [0.0015, 0.004])]
+        grad2d, seed = t.rng.exponential(0.003, 40), int(t.rng.integers(1 << 20))
+        grad2d = np.array([0.001, 0.003, 0.006])[np.digitize(grad2d, [0.0015, 0.004])]
         given = np.random.default_rng(seed)
-        right, source = t.reference.densify(scene, pressure, given, most)
-        got, told = denser(t, scene, pressure, seed, most, len(source))
+        right, source = t.reference.densify(scene, grad2d, given, max_count)
+        got, told = denser(t, scene, grad2d, seed, max_count, len(source))
         for name in SCENE:
             t.close(name, got[name], right[name])
         t.close("source", told, source)
@@ -89,9 +89,16 @@ def denser_is_better(t):
     }
     views = [[camera, striped_picture(size)]]
     seed, losses = int(t.rng.integers(1 << 20)), []
-    for most in (0, 40):
+    for max_count in (0, 40):
         found = t.call(
-            "adapters.fitted", start, views, 120, seed, np.zeros(3), most, returns=Array((120,))
+            "adapters.fitted",
+            start,
+            views,
+            120,
+            seed,
+            np.zeros(3),
+            max_count,
+            returns=Array((120,)),
         )
         losses.append(max(float(found[-5:].mean()), 1e-30))
     gain = 10 * np.log10(losses[0] / losses[1])
