@@ -16,6 +16,7 @@ from photograd.capture.view import View
 from photograd.errors import RangeError
 from photograd.fields import DenseGrid
 from photograd.fitting.data import TrainingPixels
+from photograd.fitting.model import Model
 from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd_course.gradcheck import check_gradient
 from photograd_course.viz import sign_report
@@ -174,3 +175,19 @@ def test_many_rays_are_the_mean_of_their_parts() -> None:
     np.testing.assert_allclose(
         np.abs(whole.d_sigma_t).sum(), np.abs(part.d_sigma_t).sum(), rtol=0.01
     )
+
+
+def test_a_model_brings_its_background_and_without_alpha_there_must_be_one() -> None:
+    field, capture = start(16), ball()
+    opaque = [replace(v, image=v.rgba()[..., :3].copy()) for v in capture.train]
+    photographs = replace(capture, train=tuple(opaque), has_alpha=False)
+    learned = replace(Model.of(field), background=np.array([0.2, 0.5, 0.7]))
+    found = density_gradient(learned, photographs, seed=5, rays=3000)
+    same = density_gradient(
+        field, photographs, seed=5, rays=3000, background=np.array([0.2, 0.5, 0.7])
+    )
+    np.testing.assert_array_equal(found.d_sigma_t, same.d_sigma_t)
+    assert found.d_sigma_t.any()
+    with pytest.raises(RangeError, match=r"density_gradient: background: .*no alpha.*Model"):
+        density_gradient(field, photographs, seed=5)
+    assert density_gradient(Model.of(field), capture, seed=5, rays=3000).loss > 0

@@ -162,10 +162,10 @@ CALLS: dict[str, tuple[Callable[[], Any], type[Error], str]] = {
         DtypeError,
         r"^fit: start_from: expected a Model, got str \(load_model reads one\)",
     ),
-    "model for a field": (
-        lambda: density_gradient(model(), scene.capture(), seed=0),  # type: ignore[arg-type]
+    "name for a model": (
+        lambda: density_gradient("model", scene.capture(), seed=0),  # type: ignore[arg-type]
         DtypeError,
-        r"^density_gradient: field: .*, got Model \(pass the .field of a Model\)",
+        r"^density_gradient: model: expected a model of voxels, such as dense_grid, got str",
     ),
     "views for a capture": (
         lambda: density_gradient(scene.truth(), scene.capture().train, seed=0),  # type: ignore[arg-type]

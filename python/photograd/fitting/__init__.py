@@ -6,7 +6,7 @@
     job = Fit.start(capture, FitOptions(steps=200))  # the same, a step at a time
     print(photograd.evaluate(model, capture.test).psnr)
 
-`density_gradient(model.field, capture, seed=0)` is the gradient of the loss with respect to the
+`density_gradient(model, capture, seed=0)` is the gradient of the loss with respect to the
 extinction of each voxel; `photograd_course.viz.signed_projections` draws it. The modules
 `group_gradients`, `view_gradients` and `sign_claim` have other gradients; `compare` fits several
 representations to the same photographs.

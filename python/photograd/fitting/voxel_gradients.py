@@ -21,6 +21,7 @@ from photograd.errors import DtypeError, RangeError, message
 from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels, random_background
 from photograd.fitting.loss import image_loss, image_loss_backward
+from photograd.fitting.model import Model
 from photograd.representation import RenderOptions
 from photograd.types import Array
 
@@ -47,7 +48,7 @@ class DensityGradient:
 
 
 def density_gradient(
-    field: VoxelField,
+    model: Model | VoxelField,
     capture: Capture | TrainingPixels,
     *,
     seed: int,
@@ -60,32 +61,41 @@ def density_gradient(
     gradient with respect to the leaf's sigma_t, the sum over what the leaf stands for.
 
     Args:
-        field: of a model, such as `fit(capture).field`: a grid or an octree.
+        model: of a grid or an octree; or such a field alone.
         capture: the photographs, or what `training_data` made of them.
         seed: of the choice of pixels, and of random backgrounds.
-        background: linear (3,) behind the scene. None gives each ray a random one: over one fixed
-            background, matter of the background's color would be invisible, its gradient zero.
+        background: linear (3,) behind the scene. None takes what the model has learned; where it
+            has learned none, each ray has a random one: over one fixed background, matter of the
+            background's color would be invisible, its gradient zero.
         rays: how many pixels are drawn.
 
     Raises:
         DtypeError: a field without voxels, or no capture.
+        RangeError: no background for photographs without alpha, which show one.
 
     Example:
         >>> from photograd.fitting import density_gradient
         >>> from photograd_course.viz import save_figure, signed_projections
         >>> capture = photograd.load_capture("photos")
-        >>> field = photograd.fit(capture, resolution=16, steps=20, rays=256).field
-        >>> found = density_gradient(field, capture, seed=0, rays=4096)
-        >>> figure = signed_projections(found.d_sigma_t, field.box, active=found.active)
+        >>> model = photograd.fit(capture, resolution=16, steps=20, rays=256)
+        >>> found = density_gradient(model, capture, seed=0, rays=4096)
+        >>> figure = signed_projections(found.d_sigma_t, model.field.box, active=found.active)
         >>> _ = save_figure(figure, "gradient.png")
     """
+    field = model.field if isinstance(model, Model) else model
+    if background is None and isinstance(model, Model):
+        background = model.background
     if not isinstance(field, VoxelField):
-        expected, got = "a field of voxels, such as DenseGrid", type(field).__name__
-        remedy = "pass the .field of a Model" if hasattr(field, "field") else None
-        raise DtypeError(message("density_gradient", "field", expected, got, remedy))
+        expected, got = "a model of voxels, such as dense_grid", type(field).__name__
+        remedy = "photograd.fitting.group_gradients and view_gradients have those of others"
+        raise DtypeError(message("density_gradient", "model", expected, got, remedy))
     pixels = capture
     if not isinstance(pixels, TrainingPixels):
         require_instance("density_gradient", "capture", capture, Capture, "load_capture reads one")
+        if background is None and not pixels.has_alpha:
+            expected = "a color, as the photographs have no alpha"
+            remedy = "pass the Model of a fit, which has learned one"
+            raise RangeError(message("density_gradient", "background", expected, None, remedy))
         pixels = TrainingPixels(pixels.train, pixels.color_space)
     chosen = pixels.draw(rays, seed=seed, step=0)
     display = pixels.color_space == "display"
