@@ -179,7 +179,7 @@ def test_many_rays_are_the_mean_of_their_parts() -> None:
 
 def test_a_model_brings_its_background_and_without_alpha_there_must_be_one() -> None:
     field, capture = start(16), ball()
-    opaque = [replace(v, image=v.rgba()[..., :3].copy()) for v in capture.train]
+    opaque = [replace(v, image=np.maximum(v.rgba(), [0, 0, 0, 1])) for v in capture.train]
     photographs = replace(capture, train=tuple(opaque), has_alpha=False)
     learned = replace(Model.of(field), background=np.array([0.2, 0.5, 0.7]))
     found = density_gradient(learned, photographs, seed=5, rays=3000)
