@@ -92,8 +92,8 @@ def _edit_signature(
     signature: str | None,
     returns: str | None,
 ) -> tuple[str | None, str | None]:
-    """Short names in signatures that autodoc cannot parse, as those with `<factory>`."""
-    return signature and re.sub(r"~(?:\w+\.)+(\w)", r"\1", signature), returns
+    """Without the marks of short names, which autodoc leaves where it cannot parse a default."""
+    return signature and re.sub(r"~(?=\w)", "", signature), returns
 
 
 def _skip_overrides(

@@ -19,7 +19,6 @@ REQUIREMENTS = [
     "typer>=0.12",
     "pillow>=10",
     "OpenEXR>=3.3",
-    "plyfile>=1.0",
     "zstandard>=0.22",
 ]
 

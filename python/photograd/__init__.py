@@ -7,6 +7,11 @@
     room = photograd.builtin_scene("cornell-box")  # or read_scene("room.toml"), read_model("a.glb")
     found = photograd.recover(room, [photograph], ["materials.red.albedo"])
 
+Gradients: of a fit with respect to the extinction in space, `photograd.fitting.density_gradient`,
+and to any group of parameters, `Fit.mean_gradient`; of a path traced picture with respect to all
+that is a number, `PathTracer.render_backward`. `photograd_course.viz` draws them.
+docs/five_tasks.md does each of these in a few lines.
+
 What most need is here; packages have the rest, and are imported when they are first asked for.
 All but `photograd.errors`, `photograd.types`, `photograd.images` and `photograd.capture` need the
 compiled core.

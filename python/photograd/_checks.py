@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
+from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -60,6 +61,18 @@ def require_instance(
     if not isinstance(value, kind):
         expected = f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}"
         raise DtypeError(message(function, argument, expected, type(value).__name__, remedy))
+
+
+def require_path(function: str, argument: str, value: str | Path) -> Path:
+    """The path of a file or folder, or DtypeError.
+
+    Args:
+        function, argument: that was called, and what `value` was given as, for the error.
+        value: a text or a `Path`.
+    """
+    if not isinstance(value, str | Path):
+        raise DtypeError(message(function, argument, "a path", type(value).__name__))
+    return Path(value)
 
 
 # Dataclasses of plain values, such as options and policies, checked against their annotations.

@@ -68,12 +68,11 @@ def render(
         >>> photograd.render(model, capture.test[0].camera).shape
         (16, 16, 3)
     """
-    if camera is not None:
-        remedy = "pass its .camera" if hasattr(camera, "camera") else None
-        require_instance("render", "camera", camera, Camera, remedy)
     if isinstance(what, Model):
         if camera is None:
             raise RangeError(message("render", "camera", "a camera, a model has none", "None"))
+        remedy = "pass its .camera" if hasattr(camera, "camera") else None
+        require_instance("render", "camera", camera, Camera, remedy)
         for name, value in (("spp", spp), ("seed", seed), ("options", options)):
             if value is not None:
                 expected, remedy = "nothing with a Model, which is not sampled", "leave it out"

@@ -24,6 +24,14 @@ def model() -> photograd.Model:
     return scene.as_model(scene.truth())
 
 
+def room() -> photograd.Scene:
+    return photograd.builtin_scene("cornell-box", 4)
+
+
+def tracer() -> photograd.PathTracer:
+    return photograd.PathTracer(room())
+
+
 def camera() -> photograd.Camera:
     return scene.capture().test[0].camera
 
@@ -53,6 +61,86 @@ CALLS: dict[str, tuple[Callable[[], Any], type[Error], str]] = {
         lambda: photograd.PathTracer("room.toml"),  # type: ignore[arg-type]
         DtypeError,
         r"^PathTracer: scene: expected a Scene, got str \(read_scene",
+    ),
+    "model file for a scene": (
+        lambda: photograd.PathTracer(3),  # type: ignore[arg-type]
+        DtypeError,
+        r"^PathTracer: scene: .*default_scene makes one of what read_model reads",
+    ),
+    "view for the tracer's camera": (
+        lambda: tracer().render(spp=1, seed=0, camera=scene.capture().test[0]),  # type: ignore[arg-type]
+        DtypeError,
+        r"^PathTracer.render: camera: expected a Camera, got View \(pass its .camera\)",
+    ),
+    "options as a dictionary": (
+        lambda: tracer().render(spp=1, seed=0, options={}),  # type: ignore[arg-type]
+        DtypeError,
+        r"^PathTracer.render: options: expected a PathOptions, got dict",
+    ),
+    "half a sample": (
+        lambda: photograd.render(room(), spp=1.5),  # type: ignore[call-overload]
+        DtypeError,
+        r"spp: expected a whole number, got 1.5",
+    ),
+    "negative seed": (
+        lambda: photograd.render(room(), spp=1, seed=-1),
+        RangeError,
+        r"^PathTracer: seed: expected a whole number .*18446744073709551615, got -1",
+    ),
+    "half a sample of a gradient": (
+        lambda: tracer().render_backward(np.zeros((4, 4, 3)), spp=0.5, seed=0),  # type: ignore[arg-type]
+        DtypeError,
+        r"^PathTracer.render_backward: spp: expected a whole number, got 0.5",
+    ),
+    "path of a scene to recover": (
+        lambda: photograd.recover("room.toml", np.zeros((4, 4, 3)), ["x"]),  # type: ignore[arg-type]
+        DtypeError,
+        r"^recover: scene: expected a Scene, got str \(read_scene reads a file\)",
+    ),
+    "one name": (
+        lambda: photograd.recover(room(), np.zeros((4, 4, 3)), "materials.red.albedo"),
+        DtypeError,
+        r"^recover: parameters: expected a sequence, got 'materials.*' \(put it into a list\)",
+    ),
+    "options of recover": (
+        lambda: photograd.recover(
+            room(),
+            np.zeros((4, 4, 3)),
+            ["materials.red.albedo"],
+            options={"steps": 3},  # type: ignore[arg-type]
+        ),
+        DtypeError,
+        r"^recover: options: expected a RecoveryOptions, got dict",
+    ),
+    "a number for a path": (
+        lambda: photograd.load_capture(3),  # type: ignore[arg-type]
+        DtypeError,
+        r"^load_capture: path: expected a path, got int",
+    ),
+    "a number for a model's path": (
+        lambda: photograd.load_model(3),  # type: ignore[arg-type]
+        DtypeError,
+        r"^load_model: path: expected a path, got int",
+    ),
+    "model for a capture": (
+        lambda: photograd.fit(model()),  # type: ignore[arg-type]
+        DtypeError,
+        r"^fit: capture: expected a Capture or its path, got Model",
+    ),
+    "bounds of a path": (
+        lambda: photograd.estimate_bounds("photos"),  # type: ignore[arg-type]
+        DtypeError,
+        r"^estimate_bounds: capture: expected a Capture, got str",
+    ),
+    "class for a name": (
+        lambda: photograd.fit("photos", DenseGrid),  # type: ignore[arg-type]
+        RangeError,
+        r"^Fit: representation: expected one that a capture can start",
+    ),
+    "size as a text": (
+        lambda: photograd.builtin_scene("cornell-box", "8"),  # type: ignore[arg-type]
+        DtypeError,
+        r"^builtin_scene: size: expected a whole number, got ",
     ),
     "misspelled option": (
         lambda: photograd.fit("photos", step=20),

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from photograd_course.portable_math import matmul, norm
 
 from photograd._arrays import Arguments
+from photograd._checks import require_instance
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
@@ -202,6 +203,7 @@ def estimate_bounds(capture: Capture) -> Bounds:
         The box, the rule that gave it, and the names of views that see no part of it.
 
     Raises:
+        DtypeError: no `Capture`.
         SceneError: no camera sees the box (names them), or the axes do not meet.
 
     Example:
@@ -209,6 +211,7 @@ def estimate_bounds(capture: Capture) -> Bounds:
         >>> bounds.box.shape, bounds.rule
         ((2, 3), 'declared in the file')
     """
+    require_instance("estimate_bounds", "capture", capture, Capture, "load_capture reads one")
     box, rule = _find(capture)
     blind = blind_cameras(capture.views, box)
     if len(blind) == len(capture.views):

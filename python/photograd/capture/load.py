@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from photograd._checks import require_path
 from photograd.capture.assemble import is_file
 from photograd.capture.blender import load_blender
 from photograd.capture.capture import Capture
@@ -45,6 +46,7 @@ def load_capture(
         The capture; `Capture.conversions` lists every conversion and assumption.
 
     Raises:
+        DtypeError: neither a text nor a `Path`.
         IoError: nothing that we know there, or files missing, damaged or outside of the folder.
         RangeError, ShapeError, SceneError: files that contradict themselves.
 
@@ -54,7 +56,7 @@ def load_capture(
         >>> view.rgba().shape  # display values, straight alpha
         (16, 16, 4)
     """
-    path = Path(path)
+    path = require_path(_NAME, "path", path)
     found = find_formats(path)
     if not found:
         expected = (

@@ -32,7 +32,7 @@ def require_startable(name: str) -> None:
     if name in representations():
         remedy = representation(name).teaching_example or "derive its class from Fittable"
     else:
-        near = nearest(name, known)
+        near = nearest(str(name), known)
         remedy = f"did you mean {near!r}?" if near else ""
     expected = f"one that a capture can start: {' or '.join(map(repr, known))}"
     raise RangeError(message("Fit", "representation", expected, repr(name), remedy or None))

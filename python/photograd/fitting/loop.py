@@ -149,7 +149,7 @@ class Fit:
         return fit
 
     @classmethod
-    def resume(cls, capture: Capture, folder: Path) -> Fit:
+    def resume(cls, capture: Capture, folder: str | Path) -> Fit:
         """Continue the fit that left a checkpoint in a folder.
 
         Args:
@@ -161,7 +161,7 @@ class Fit:
             RangeError: one of another capture: other names, images, cameras or another size.
         """
         saved = load_checkpoint(folder)
-        model = model_of(saved, folder)
+        model = model_of(saved, Path(folder))
         require_split_of(saved, capture)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
         require_pixels_of(saved, fit.data.digest)
@@ -292,7 +292,7 @@ class Fit:
         loss = self.history[-1][1] if self.history else float("nan")
         return FitResult(folder / FILE_NAME, self.step_number, run.finished, run.seconds, loss)
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: str | Path) -> None:
         """Write the checkpoint DIR/model.npz atomically.
 
         Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
@@ -316,7 +316,7 @@ class Fit:
         }
         history = np.array(self.history, np.float64).reshape(-1, 3)
         save_checkpoint(
-            folder / FILE_NAME,
+            Path(folder) / FILE_NAME,
             Checkpoint(meta, params, self.optimizer.state(), self.model.state(), history),
         )
 

@@ -19,7 +19,7 @@ from photograd._checkpoint import (
     make_folder,
     save_checkpoint,
 )
-from photograd._checks import from_plain, typed
+from photograd._checks import from_plain, require_path, typed
 from photograd._fit_options import FitOptions
 from photograd.errors import DtypeError, Error, IoError, RangeError, message
 from photograd.fields import fittable
@@ -80,6 +80,7 @@ def load_model(path: str | Path) -> Model:
         path: the folder, or the file model.npz in it, or one of its snapshots.
 
     Raises:
+        DtypeError: neither a text nor a `Path`.
         IoError: no file, or one that is damaged or holds something else.
 
     Example:
@@ -87,7 +88,8 @@ def load_model(path: str | Path) -> Model:
         >>> photograd.load_model("model").field.name
         'dense_grid'
     """
-    return model_of(load_checkpoint(path), Path(path))
+    path = require_path("load_model", "path", path)
+    return model_of(load_checkpoint(path), path)
 
 
 def model_of(saved: Checkpoint, path: Path) -> Model:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from photograd_course.suggest import choose_from
 
@@ -15,8 +14,6 @@ from photograd import _descend as descent
 from photograd._fit_options import FitOptions
 from photograd.errors import DtypeError, RangeError, message
 from photograd.fields import fittable
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def options_for(representation: str, **given: Any) -> FitOptions:
@@ -38,24 +35,6 @@ def options_for(representation: str, **given: Any) -> FitOptions:
     known = fittable().get(representation)
     defaults = {} if known is None else known.fit_defaults
     return FitOptions(**{"representation": representation, **defaults, **chosen})
-
-
-def list_options(function: Function) -> Function:
-    """Decorator: describe the fields of `FitOptions` in the docstring of a function.
-
-    Its entry `options`, the last of its arguments, is followed by one for each field.
-    """
-    own: Any = function
-    described, docstring = inspect.getdoc(FitOptions), inspect.getdoc(function)
-    if described and docstring:  # both are None under python -OO
-        text = described.partition("Attributes:")[2] + "\n"
-        for field in fields(FitOptions):
-            kind = f"{field.type}, default {field.default!r}"
-            text = text.replace(f"\n    {field.name}:", f"\n    {field.name} ({kind}):")
-        text = text[text.index("\n    resolution") :].rstrip()
-        args, _, rest = docstring.partition("\n\nReturns:")
-        own.__doc__ = f"{args}{text}\n\nReturns:{rest}"
-    return function
 
 
 def users_of(option: str) -> tuple[str, ...]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import inspect
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
+from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeVar
 
 from photograd._checkpoint import FILE_NAME
 from photograd._checks import require_instance
@@ -14,14 +16,34 @@ from photograd._descend import progress_bar, run_folder
 from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.fitting.checks import require_startable
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import list_options, options_for, refuse_without_effect
+from photograd.fitting.options import options_for, refuse_without_effect
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
-@list_options
+def _list_options(function: _Function) -> _Function:
+    """Decorator: describe the fields of `FitOptions` in the docstring of a function.
+
+    Its entry `options`, the last of its arguments, is followed by one for each field.
+    """
+    own: Any = function
+    described, docstring = inspect.getdoc(FitOptions), inspect.getdoc(function)
+    if described and docstring:  # both are None under python -OO
+        text = described.partition("Attributes:")[2] + "\n"
+        for field in fields(FitOptions):
+            kind = f"{field.type}, default {field.default!r}"
+            text = text.replace(f"\n    {field.name}:", f"\n    {field.name} ({kind}):")
+        text = text[text.index("\n    resolution") :].rstrip()
+        args, _, rest = docstring.partition("\n\nReturns:")
+        own.__doc__ = f"{args}{text}\n\nReturns:{rest}"
+    return function
+
+
+@_list_options
 def fit(
     capture: Capture | str | Path,
     representation: str = "dense_grid",
@@ -57,7 +79,7 @@ def fit(
         RangeError: an unknown representation, options without meaning or that take more memory than
             there is, a folder that holds a model already without `resume`, a checkpoint of another
             capture, or options together with `resume`.
-        DtypeError: an option that does not exist; names the nearest.
+        DtypeError: an option that does not exist; names the nearest. Or no capture, or no `Model`.
         SceneError: training cameras that do not see the scene.
         IoError: a checkpoint that cannot be written, or is not there to resume from, or a folder
             that another run holds.
@@ -72,6 +94,9 @@ def fit(
     chosen = None if resume else _checked_options(representation, options)
     if start_from is not None:
         require_instance("fit", "start_from", start_from, Model, "load_model reads one")
+    if not isinstance(capture, Capture | str | Path):
+        expected, got = "a Capture or its path", type(capture).__name__
+        raise DtypeError(message("fit", "capture", expected, got))
     photographs = capture if isinstance(capture, Capture) else load_capture(capture)
     path = None if folder is None else Path(folder)
     with run_folder("fit", path, FILE_NAME, resume=resume):

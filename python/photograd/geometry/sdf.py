@@ -303,7 +303,7 @@ class Body:
 
         Raises:
             RangeError: as `trace`.
-        ShapeError: as `trace`, and for hits or d_t of other rays.
+            ShapeError: as `trace`, and for hits or d_t of other rays.
         """
         call = Arguments("Body.trace_backward", np.float64)
         rays = checked_rays(call, origins, directions)

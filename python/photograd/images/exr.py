@@ -17,30 +17,52 @@ from photograd.images.kind import require_size
 _CHANNELS = ("R", "G", "B", "A")
 
 MAX_HALF = 65504.0
+DEFLATED = 1032
+"""Bytes that one byte of a file may become: the most of deflate, which packs most EXR files."""
+SMALL = 64 << 20
+"""Bytes that any file may take: other methods pack even pictures of one color tighter."""
 
 
 def read_exr_header(path: Path) -> tuple[int, int, bool]:
     """Width, height and whether there is an alpha channel.
 
     Raises:
-        IoError: no such file, not an EXR file, empty or absurd window, or neither R, G, B nor Y
-            channels.
+        IoError: no such file, not an EXR file, an empty or absurd window, more pixels than a file
+            of this length can hold, deep pixels, or neither R, G, B nor Y channels.
     """
     require_file("read_exr_header", path)  # the library would call it damaged, and write to stderr
     try:
         with OpenEXR.File(str(path), separate_channels=True, header_only=True) as opened:
-            header = opened.header()
-            lower, upper = header["dataWindow"]
-            names = {channel.name for channel in header["channels"]}
+            headers = [part.header for part in opened.parts]
+            lower, upper = headers[0]["dataWindow"]
+            names = {channel.name for channel in headers[0]["channels"]}
+            stated = sum(map(_decoded_bytes, headers))
+            kinds = {header["type"] for header in headers}
     except Exception as error:  # the binding raises RuntimeError, ValueError, TypeError and others
         raise _unreadable("read_exr_header", path, error) from error
     width = int(upper[0]) - int(lower[0]) + 1
     height = int(upper[1]) - int(lower[1]) + 1
     require_size("read_exr_header", str(path), width, height, len(names))
+    if not kinds <= {OpenEXR.scanlineimage, OpenEXR.tiledimage}:
+        raise IoError(message("read_exr_header", str(path), "scan lines or tiles", "deep pixels"))
+    size = path.stat().st_size
+    if stated > SMALL + DEFLATED * size:
+        expected, got = f"pixels that {size:,} bytes can hold", f"{stated:,} bytes of them stated"
+        raise IoError(message("read_exr_header", str(path), expected, got))
     if not (set(_CHANNELS[:3]) <= names or "Y" in names):
         expected = "channels R, G, B or Y"
         raise IoError(message("read_exr_header", str(path), expected, sorted(names)))
     return width, height, "A" in names
+
+
+def _decoded_bytes(header: dict[str, Any]) -> int:
+    """What the library allocates for a part: the pixels of its channels, and a tile."""
+    lower, upper = header["dataWindow"]
+    pixels = (int(upper[0]) - int(lower[0]) + 1) * (int(upper[1]) - int(lower[1]) + 1)
+    tile = header.get("tiles")
+    if tile is not None:
+        pixels += int(tile.xSize) * int(tile.ySize)
+    return 4 * len(header["channels"]) * max(pixels, 0)
 
 
 def read_exr(path: Path) -> npt.NDArray[np.float32]:

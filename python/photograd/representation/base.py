@@ -52,15 +52,15 @@ class ParamSpec:
 class Representation(ABC):
     """A scene as arrays of parameters, rendered and differentiated.
 
-    A class of its own sets `name` and `capabilities`, and each instance sets `params`; the page
-    "Five tasks" of the book shows a whole one. `photograd.check_gradients` proves its adjoint, with
+    A class of its own sets `name` and `capabilities`, and each instance sets `params`;
+    docs/five_tasks.md shows a whole one. `photograd.check_gradients` proves its adjoint, with
     `example` and `example_batch`. To be fitted to a capture it has to be a `Fittable`.
 
     Attributes:
         name: what options, files and the registry call it.
         capabilities: what `render` takes, of `CAPABILITIES`: "rays" (`RayBatch`), "image"
             (`ImageBatch`), "canvas2d" (`CanvasBatch`), "path".
-        color_space: of the colors it renders, "linear" or "srgb".
+        color_space: of the colors it renders, "linear" or "display".
         teaching_example: why no capture can be fitted with it; empty for what is a `Fittable`.
         no_camera_adjoint: why `render` refuses `camera_adjoint`; empty where it does not.
         params: the arrays that are optimized, by the names of `param_groups`.

@@ -159,6 +159,9 @@ class Fittable(Representation):
 
         Args:
             options: of the fit.
+
+        Returns:
+            {group: (names of dtypes, shape)} of each, such as {"values": (("float32",), (8, 3))}.
         """
 
     @classmethod

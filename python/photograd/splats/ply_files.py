@@ -25,9 +25,8 @@ from pathlib import Path
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
-from plyfile import PlyData, PlyElement
 
-from photograd._ply import Table, read_ply
+from photograd._ply import Table, ply_bytes, read_ply
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.coding import logit_of, require_room, unit_quats
@@ -103,9 +102,7 @@ def write_gaussian_ply(
     vertex = np.empty(n, [(name, "<f4") for name, _ in columns])
     for name, column in columns:
         vertex[name] = column
-    vertices = PlyElement.describe(vertex, "vertex")
-    data = PlyData([vertices], byte_order="<", comments=presentation.comments())
-    atomic_write(Path(path), data.write)
+    atomic_write(Path(path), ply_bytes("vertex", vertex, presentation.comments()))
 
 
 def _vertices(path: Path) -> Array:

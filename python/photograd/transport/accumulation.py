@@ -119,7 +119,7 @@ class Accumulation:
             many: of the argument that is the count.
 
         Raises:
-            RangeError: a count below 1.
+            DtypeError, RangeError: a count that is no whole number, or below 1.
             ShapeError: sums of another shape than (H, W).
         """
         call = Arguments(function, np.float64)

@@ -351,7 +351,7 @@ def builtin_scene(name: str, size: int = 256) -> Scene:
 
     Raises:
         SceneError: no such scene; names the nearest.
-        RangeError: size below 1.
+        DtypeError, RangeError: size that is no whole number, or below 1.
 
     Example:
         >>> room = photograd.builtin_scene("cornell-box", 16)

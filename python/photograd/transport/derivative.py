@@ -19,7 +19,7 @@ from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole
-from photograd.transport.path_options import DEFAULTS, PathOptions
+from photograd.transport.path_options import DEFAULTS, PathOptions, checked_view
 from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
@@ -92,7 +92,7 @@ def derivative_image(
         ShapeError: a change of another shape than its parameter.
         Error: radiance that is not finite; names the pixel.
     """
-    view = tracer.scene.camera if camera is None else camera
+    view = checked_view("derivative_image", tracer.scene.camera, camera, options)
     picture = Accumulation.empty(view.height, view.width)
     derivative = Accumulation.empty(view.height, view.width)
     add_derivative_samples(
@@ -129,7 +129,7 @@ def add_derivative_samples(
         ShapeError: sums of another size.
         Error: as `derivative_image`.
     """
-    view = tracer.scene.camera if camera is None else camera
+    view = checked_view("derivative_image", tracer.scene.camera, camera, options)
     for name, sums in (("picture", picture), ("derivative", derivative)):
         sums.check_call("derivative_image", (view.height, view.width), spp, name=name)
     if picture.count != derivative.count:

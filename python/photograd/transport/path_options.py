@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from photograd._checks import require_bounds, require_choices
+from photograd._arrays import Arguments
+from photograd._checks import require_bounds, require_choices, require_instance
+from photograd.capture.camera import Camera
 
 Strategy = Literal["light", "bsdf", "mis"]
 Heuristic = Literal["balance", "power"]
@@ -55,7 +57,11 @@ class PathOptions:
 
         Args:
             seed: of all random numbers.
+
+        Raises:
+            DtypeError, RangeError: no whole number, or none from 0 to 2^64 - 1.
         """
+        seed = Arguments("PathTracer").integer("seed", seed, low=0, high=(1 << 64) - 1)
         late = NEVER if self.roulette_from is None else self.roulette_from
         strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
         sampler = SAMPLERS.index(self.sampler)
@@ -63,3 +69,23 @@ class PathOptions:
 
 
 DEFAULTS = PathOptions()
+
+
+def checked_view(function: str, own: Camera, camera: Camera | None, options: PathOptions) -> Camera:
+    """The camera of a rendering.
+
+    Args:
+        function: on whose behalf the error speaks.
+        own: of the scene.
+        camera: that was given, or None.
+        options: that were given.
+
+    Raises:
+        DtypeError: no `Camera`, or no `PathOptions`.
+    """
+    require_instance(function, "options", options, PathOptions)
+    if camera is None:
+        return own
+    remedy = "pass its .camera" if hasattr(camera, "camera") else None
+    require_instance(function, "camera", camera, Camera, remedy)
+    return camera

@@ -30,7 +30,7 @@ from photograd.transport.core_arrays import (
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
 from photograd.transport.media_list import PackedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
-from photograd.transport.path_options import DEFAULTS, PathOptions
+from photograd.transport.path_options import DEFAULTS, PathOptions, checked_view
 from photograd.transport.scene import Scene
 from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape
 from photograd.types import Array
@@ -155,7 +155,7 @@ class PathTracer:
             RangeError: spp below 1.
             Error: radiance that is not finite; names the pixel.
         """
-        view = self.scene.camera if camera is None else camera
+        view = checked_view("PathTracer.render", self.scene.camera, camera, options)
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options, camera=camera)
         return sums
@@ -183,9 +183,9 @@ class PathTracer:
 
         Raises:
             RangeError, Error: as `render`.
-        ShapeError: sums or hits of another size.
+            ShapeError: sums or hits of another size.
         """
-        view = self.scene.camera if camera is None else camera
+        view = checked_view("PathTracer.render", self.scene.camera, camera, options)
         sums.check_call("add_samples", (view.height, view.width), spp)
         other = None if sampling_params is None else self._material_row(sampling_params)
         texels = None if sampling_params is None else self._texels(sampling_params)
@@ -238,8 +238,8 @@ class PathTracer:
             ShapeError: d_image of another shape than the picture.
             RangeError: spp below 1, or another spread.
         """
-        view = self.scene.camera if camera is None else camera
         call = Arguments("PathTracer.render_backward", np.float64)
+        view = checked_view(call.function, self.scene.camera, camera, options)
         d_image = call.array("d_image", d_image, (view.height, view.width, 3), finite=False)
         call.integer("spp", spp, low=1)
         return self.add_up(

@@ -31,8 +31,9 @@ from photograd._checkpoint import (
     load_checkpoint,
     save_checkpoint,
 )
+from photograd._checks import require_instance
 from photograd._descend import Progress, descend
-from photograd.errors import Error, IoError, RangeError, message
+from photograd.errors import DtypeError, Error, IoError, RangeError, message
 from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Parameter, is_light, scene_with
@@ -79,12 +80,18 @@ class InverseRendering:
             options: steps, samples, rates, seed; None takes the defaults.
 
         Raises:
+            DtypeError: no `Scene`, no sequence of parameters, or no `RecoveryOptions`.
             RangeError: no parameter, one twice, one that the scene does not have or whose
                 derivative is incomplete, or out of bounds.
             ShapeError: no picture, or one that its camera does not take.
         """
+        require_instance("recover", "scene", scene, Scene, "read_scene reads a file")
+        if isinstance(parameters, str | Parameter):
+            got, remedy = repr(parameters), "put it into a list"
+            raise DtypeError(message("recover", "parameters", "a sequence", got, remedy))
         self.scene = scene
-        self.options = options or RecoveryOptions()
+        self.options = RecoveryOptions() if options is None else options
+        require_instance("recover", "options", self.options, RecoveryOptions)
         self.targets = checked_targets(targets, scene)
         self._weights = [loss_weights(target, self.options.loss) for target in self.targets]
         given = [Parameter(each) if isinstance(each, str) else each for each in parameters]

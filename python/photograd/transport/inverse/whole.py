@@ -19,7 +19,7 @@ def recover(
     parameters: Sequence[Parameter | str],
     *,
     options: RecoveryOptions | None = None,
-    folder: Path | None = None,
+    folder: str | Path | None = None,
     resume: bool = False,
     bar: bool = False,
 ) -> RecoveryResult:
@@ -71,9 +71,10 @@ def recover(
         >>> found.params["materials.red.albedo"].shape
         (3,)
     """
-    with run_folder("recover", folder, FILE_NAME, resume=resume):
+    place = None if folder is None else Path(folder)
+    with run_folder("recover", place, FILE_NAME, resume=resume):
         job = InverseRendering(scene, targets, parameters, options)
-        if resume and folder is not None:
-            job.load(folder)
+        if resume and place is not None:
+            job.load(place)
         with progress_bar("recover", job, shown=bar) as on_step:
-            return job.run(folder, on_step=on_step)
+            return job.run(place, on_step=on_step)
