@@ -22,7 +22,7 @@ def angle_behind(reference, eta, angle):
     return float(np.degrees(np.arctan2(abs(out[0, 0]), abs(out[0, 2]))))
 
 
-def nodes_of_tree(reference, things):
+def nodes_of_tree(reference, primitives):
     """How many nodes hold so many primitives."""
-    low = np.random.default_rng(5).random((int(things), 3))
+    low = np.random.default_rng(5).random((int(primitives), 3))
     return float(len(reference.build_bvh(low, low + 0.1)[0]))

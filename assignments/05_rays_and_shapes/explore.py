@@ -59,11 +59,11 @@ def look(corners, origins, ways):
             cost[0, r] += 1
             return boxes[node]
 
-        def meet(things, r=r, o=o, d=d):
-            cost[1, r] += len(things)
-            return mine.hit_triangle(o, d, corners[things])[0]
+        def intersect(primitives, r=r, o=o, d=d):
+            cost[1, r] += len(primitives)
+            return mine.hit_triangle(o, d, corners[primitives])[0]
 
-        t[r], number[r] = mine.traverse(first, many, order, box, meet, o, d)
+        t[r], number[r] = mine.traverse(first, many, order, box, intersect, o, d)
     return t, number, *cost
 
 

@@ -309,10 +309,10 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
             asked[r] += 1
             return boxes[node]
 
-        def meet(things: Array, o: Array = o, d: Array = d) -> Array:
-            return module.hit_triangle(o, d, corners[things])[0]
+        def intersect(primitives: Array, o: Array = o, d: Array = d) -> Array:
+            return module.hit_triangle(o, d, corners[primitives])[0]
 
-        found[r] = module.traverse(first, count, order, box, meet, o, d)[0]
+        found[r] = module.traverse(first, count, order, box, intersect, o, d)[0]
     return asked, found
 
 

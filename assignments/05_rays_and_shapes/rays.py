@@ -208,7 +208,7 @@ def traverse(
     count: Indices,
     order: Indices,
     box: Callable[[int], Box],
-    meet: Callable[[Indices], PerPrimitive],
+    intersect: Callable[[Indices], PerPrimitive],
     origin: Vector,
     direction: Vector,
 ) -> tuple[float, int]:
@@ -217,8 +217,8 @@ def traverse(
     Args:
         first (N,), count (N,), order (P,): of `build_bvh`.
         box: a function from the index of a node to its box (2, 3).
-        meet: a function from the indices (K,) of primitives to t (K,), where the ray hits each,
-            infinite for a miss. Calls of both are counted: make as few as you can.
+        intersect: a function from the indices (K,) of primitives to t (K,), where the ray hits
+            each, infinite for a miss. Calls of both are counted: make as few as you can.
         origin, direction: (3,); a direction of any length, single components may be zero.
 
     Returns:
@@ -246,10 +246,10 @@ def traverse(
             children = [(enter(child), child) for child in (first[node], first[node] + 1)]
             todo += sorted(children, reverse=True)
             continue
-        things = order[first[node] : first[node] + count[node]]
-        t = meet(things)
+        primitives = order[first[node] : first[node] + count[node]]
+        t = intersect(primitives)
         if t.min() < best:
-            best, number = t.min(), things[t.argmin()]
+            best, number = t.min(), primitives[t.argmin()]
     return float(best), int(number)
     # <<< solution
 
@@ -271,7 +271,7 @@ def trace_mesh(corners, origins, directions):
             count,
             order,
             lambda node: boxes[node],
-            lambda things, o=o, d=d: hit_triangle(o, d, corners[things])[0],
+            lambda primitives, o=o, d=d: hit_triangle(o, d, corners[primitives])[0],
             o,
             d,
         )

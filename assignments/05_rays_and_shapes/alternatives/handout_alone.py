@@ -88,7 +88,7 @@ def build_bvh(low, high):
     return np.array(boxes), np.array(first), np.array(count), np.array(order)
 
 
-def traverse(first, count, order, box, meet, origin, direction):
+def traverse(first, count, order, box, intersect, origin, direction):
     def entry(node):
         low, high = box(node)
         near, far = [0.0], [np.inf]
@@ -104,10 +104,10 @@ def traverse(first, count, order, box, meet, origin, direction):
         if near >= best[0]:
             return best
         if count[node] > 0:
-            things = order[first[node] : first[node] + count[node]]
-            t = meet(things)
+            primitives = order[first[node] : first[node] + count[node]]
+            t = intersect(primitives)
             k = int(np.argmin(t))
-            return (float(t[k]), int(things[k])) if t[k] < best[0] else best
+            return (float(t[k]), int(primitives[k])) if t[k] < best[0] else best
         entries = {child: entry(child) for child in (int(first[node]), int(first[node]) + 1)}
         for child in sorted(entries, key=entries.get):
             best = search(child, entries[child], best)

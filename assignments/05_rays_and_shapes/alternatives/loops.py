@@ -1,4 +1,4 @@
-"""Loops over single rays, triangles and things, in plain numbers."""
+"""Loops over single rays, triangles and primitives, in plain numbers."""
 
 import math
 
@@ -119,7 +119,7 @@ def build_bvh(low, high):
     return np.array(boxes, float), np.array(first), np.array(count), np.array(order)
 
 
-def traverse(first, count, order, box, meet, origin, direction):
+def traverse(first, count, order, box, intersect, origin, direction):
     def enter(node):
         low, high = box(node)
         near, far = 0.0, math.inf
@@ -139,10 +139,10 @@ def traverse(first, count, order, box, meet, origin, direction):
             return
         at = int(first[node])
         if count[node]:
-            things = order[at : at + int(count[node])]
-            for t, thing in zip(meet(things), things, strict=True):
+            primitives = order[at : at + int(count[node])]
+            for t, primitive in zip(intersect(primitives), primitives, strict=True):
                 if t < best[0]:
-                    best[:] = float(t), int(thing)
+                    best[:] = float(t), int(primitive)
             return
         one, two = enter(at), enter(at + 1)
         ways = [(at, one), (at + 1, two)]

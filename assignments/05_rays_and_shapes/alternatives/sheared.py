@@ -103,7 +103,7 @@ def build_bvh(low, high):
     return boxes, np.array(first), np.array(count), np.concatenate(order)
 
 
-def traverse(first, count, order, box, meet, origin, direction):
+def traverse(first, count, order, box, intersect, origin, direction):
     def enter(node):
         low, high = np.asarray(box(node))
         still = direction == 0
@@ -132,8 +132,8 @@ def traverse(first, count, order, box, meet, origin, direction):
             push(start)
             push(start + 1)
             continue
-        for thing in order[start : start + int(count[node])]:
-            t = float(meet(np.array([thing]))[0])
+        for primitive in order[start : start + int(count[node])]:
+            t = float(intersect(np.array([primitive]))[0])
             if t < best:
-                best, number = t, int(thing)
+                best, number = t, int(primitive)
     return float(best), number

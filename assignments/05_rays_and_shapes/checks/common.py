@@ -60,13 +60,13 @@ def built(t, low, high):
     while waiting:
         node = waiting.pop()
         used[node] += 1
-        at, things = int(first[node]), int(count[node])
+        at, primitives = int(first[node]), int(count[node])
         t.require(
-            at >= 0 and at + (things or 2) <= (len(low) if things else nodes),
+            at >= 0 and at + (primitives or 2) <= (len(low) if primitives else nodes),
             "first points beyond the end",
         )
-        owned[at : at + things] += 1
-        if not things:
+        owned[at : at + primitives] += 1
+        if not primitives:
             t.require(not used[at : at + 2].any(), "two nodes share a child, or one is its own")
             waiting += [at, at + 1]
     t.require(bool((used == 1).all()), "a node belongs to no parent")
@@ -107,10 +107,10 @@ class Scene:
             raise CheckFailed("traverse: asks without end")
         return self.boxes[node]
 
-    def meet(self, numbers):
+    def intersect(self, numbers):
         numbers = np.asarray(numbers)
         whole = numbers.ndim == 1 and numbers.size and numbers.dtype.kind == "i"
         if not whole or not ((numbers >= 0) & (numbers < len(self.low))).all():
-            raise CheckFailed("traverse: meet wants numbers (K,) of primitives, one or more")
+            raise CheckFailed("traverse: intersect wants numbers (K,) of primitives, one or more")
         self.met += numbers.tolist()
         return self.times(numbers)

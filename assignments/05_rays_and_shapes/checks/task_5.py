@@ -44,8 +44,8 @@ def boxes_fit(t):
     for count in SIZES:
         low, high = some_boxes(t, count)
         tree = built(t, low, high)
-        things = held(tree)
-        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in things])
+        primitives = held(tree)
+        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in primitives])
         t.close(f"boxes of {count} primitives", tree[0], right)
 
 
@@ -81,9 +81,9 @@ def halves_lie_apart(t):
         low[0], high[0] = -30 * np.roll([1, 0, 0], t.rng.integers(3)), np.array([1.0, 1, 1])
         tree = built(t, low, high)
         _, first, many, _ = tree
-        things, middle = held(tree), (low + high) / 2
+        primitives, middle = held(tree), (low + high) / 2
         for node in np.flatnonzero(many == 0):
-            axis = int(np.argmax(np.ptp(middle[things[node]], axis=0)))
-            one, two = (middle[things[first[node] + k], axis] for k in (0, 1))
+            axis = int(np.argmax(np.ptp(middle[primitives[node]], axis=0)))
+            one, two = (middle[primitives[first[node] + k], axis] for k in (0, 1))
             split = one.max() <= two.min() or two.max() <= one.min()
             t.require(bool(split), "the halves of a node mix along the axis of largest spread")

@@ -31,7 +31,15 @@ def first_met(t, scene, tree, origin, direction):
     parts = Items(Number(finite=False, above=0.0), Integer(), names=("t", "number"))
     _, first, count, order = tree
     return t.call(
-        "traverse", first, count, order, scene.box, scene.meet, origin, direction, returns=parts
+        "traverse",
+        first,
+        count,
+        order,
+        scene.box,
+        scene.intersect,
+        origin,
+        direction,
+        returns=parts,
     )
 
 
@@ -136,13 +144,13 @@ def few_boxes_are_asked_for(t):
         passed = boxes[:, 1, 0] < origin[0] if ahead > 0 else boxes[:, 0, 0] > origin[0]
         entered = inside & begins & ~passed
         needed = 1 + 2 * int((entered & (count == 0)).sum())
-        things = int(count[entered].sum())
+        primitives = int(count[entered].sum())
         t.require(
             len(scene.asked) <= needed, f"{len(scene.asked)} boxes were tested, {needed} are enough"
         )
         t.require(
-            len(scene.met) <= things,
-            f"{len(scene.met)} primitives were tested, {things} are enough",
+            len(scene.met) <= primitives,
+            f"{len(scene.met)} primitives were tested, {primitives} are enough",
         )
 
 

@@ -156,11 +156,11 @@ def test_check_values_of_the_tree(solution) -> None:
             asked.append(node)
             return boxes[node]
 
-        def meet(things, y=y):
-            ahead = low[things, 0] + 1
-            return np.where((low[things, 1] <= y) & (y <= high[things, 1]), ahead, np.inf)
+        def intersect(primitives, y=y):
+            ahead = low[primitives, 0] + 1
+            return np.where((low[primitives, 1] <= y) & (y <= high[primitives, 1]), ahead, np.inf)
 
-        got = solution.traverse(first, count, order, box, meet, origin, X)
+        got = solution.traverse(first, count, order, box, intersect, origin, X)
         assert (*got, len(asked)) == (t, number, many)
 
 
@@ -198,12 +198,12 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
             sine = eta * np.sin(np.radians(angle))
             right = np.degrees(np.arcsin(sine)) if sine < 1 else angle
             assert keys.angle_behind(reference, eta, angle) == pytest.approx(right)
-    for things in drawn["05.g3"]["things"]:
-        leaves, groups = 0, [things]
+    for primitives in drawn["05.g3"]["primitives"]:
+        leaves, groups = 0, [primitives]
         for many in groups:
             leaves += many <= 2
             groups += [many // 2, many - many // 2] if many > 2 else []
-        assert keys.nodes_of_tree(reference, things) == 2 * leaves - 1 == len(groups)
+        assert keys.nodes_of_tree(reference, primitives) == 2 * leaves - 1 == len(groups)
 
 
 def test_rays_of_the_camera_are_those_of_the_core(solution) -> None:

@@ -37,8 +37,8 @@ def trees_at_random(t):
         half = 2.0 * count ** (-1 / 2) * t.rng.uniform(0.2, 1, (count, 3))
         low, high = middle - half, middle + half
         tree = built(t, low, high)
-        things = held(tree)
-        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in things])
+        primitives = held(tree)
+        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in primitives])
         t.close(f"boxes of {count} primitives", tree[0], right)
         asked = 0
         for _ in range(24):
@@ -50,7 +50,7 @@ def trees_at_random(t):
                 tree[2],
                 tree[3],
                 lambda k, s=scene: s.box(int(k)),
-                scene.meet,
+                scene.intersect,
                 scene.origin,
                 scene.direction,
             )

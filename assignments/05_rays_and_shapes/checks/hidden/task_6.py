@@ -12,7 +12,7 @@ def searched(t, n):
     scene.boxes, *tree = t.reference.build_bvh(scene.low, scene.high)
     origin = t.rng.uniform(-4, 4, 3)
     scene.ray(origin, (scene.low[0] + scene.high[0]) / 2 - origin)
-    return *tree, lambda k: scene.box(int(k)), scene.meet, origin, scene.direction
+    return *tree, lambda k: scene.box(int(k)), scene.intersect, origin, scene.direction
 
 
 @hidden_check(
@@ -53,10 +53,10 @@ def scenes_at_random(t):
                 tree[2],
                 tree[3],
                 lambda k, s=scene: s.box(int(k)),
-                scene.meet,
+                scene.intersect,
                 origin,
                 direction,
             )
             enough = [enough[0] + len(scene.asked), enough[1] + len(scene.met)]
-        for what, got, right in zip(("boxes", "things"), mine, enough, strict=True):
+        for what, got, right in zip(("boxes", "primitives"), mine, enough, strict=True):
             t.require(got <= 1.05 * right, f"{got} {what} were tested, {right} are enough")
