@@ -11,7 +11,8 @@
 namespace photograd {
 namespace {
 
-constexpr int most_width = 1024, most_layers = 64, most_levels = 32, most_features = HashEncoding<float, 3>::max_features;
+constexpr int most_width = 1024, most_layers = 64, most_levels = 32,
+              most_features = HashEncoding<float, 3>::max_features;
 constexpr int most_octaves = 24, most_bins = 256, most_log2_rows = 24, most_resolution = 1 << 20;
 
 /// Throws RangeError unless least <= got <= most.

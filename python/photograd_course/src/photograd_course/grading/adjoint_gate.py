@@ -37,7 +37,12 @@ Operand = Array | tuple[Array, ...]
 
 
 def random_cotangent(rng: np.random.Generator, shape: tuple[int, ...]) -> Array:
-    """Uniform in [-1, 1], and never uniform across the array."""
+    """Uniform in [-1, 1], and never uniform across the array.
+
+    Args:
+        rng: random numbers.
+        shape: of the output.
+    """
     return rng.uniform(-1.0, 1.0, shape)
 
 
@@ -67,6 +72,14 @@ def agrees_with_finite_differences(
     tolerance: Tolerance = DIFFERENCES,
 ) -> None:
     """Compare each group of ``got`` with central differences of ``forward``.
+
+    Args:
+        trial: of the check.
+        got: {group: gradient} that the student returned.
+        forward: the function, of {group: array}.
+        point: {group: array}, where it is differentiated.
+        d_output: cotangent of its output.
+        tolerance: of the comparison.
 
     Raises:
         CheckFailed: a group is off, or its true gradient is zero (the place proves nothing).

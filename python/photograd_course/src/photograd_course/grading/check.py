@@ -86,6 +86,19 @@ def check(
 ) -> Callable[[Body], Check]:
     """Make a check of the function below; the arguments are attributes of `Check`.
 
+    Args:
+        id: task and name, such as "05.1.outside".
+        points: of the check, above 0.
+        calls: functions of the student that it calls.
+        visibility: "public", or "hidden" from kits.
+        needs: functions of earlier tasks that those call.
+        tolerance: of `Trial.close`, unless a comparison has its own.
+        hint: what to read where it fails.
+        seconds: of the worker's processor time.
+        sole: why it is kept although no mutant needs it.
+        adjoints: functions that have to be written as adjoints; by default, by their names.
+        battery: subjects of the generated battery, of a hidden check.
+
     Raises:
         RangeError: a field is out of range.
     """
@@ -120,7 +133,12 @@ def check(
 
 
 def hidden_check(id: str, **arguments: Any) -> Callable[[Body], Check]:
-    """`check` with the visibility "hidden"."""
+    """`check` with the visibility "hidden".
+
+    Args:
+        id: task and name.
+        arguments: the others of `check`.
+    """
     return check(id, visibility="hidden", **arguments)
 
 

@@ -8,7 +8,12 @@ Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 
 def unit_vectors(rng: np.random.Generator, count: int) -> Array:
-    """Vectors (count, 3) of length 1, uniform on the sphere."""
+    """Vectors (count, 3) of length 1, uniform on the sphere.
+
+    Args:
+        rng: random numbers.
+        count: how many.
+    """
     v = rng.normal(size=(count, 3))
     unit: Array = v / np.linalg.norm(v, axis=1, keepdims=True)
     return unit
@@ -28,7 +33,11 @@ def upper_directions(rng: np.random.Generator, count: int, low: float = 0.1, up:
 
 
 def random_rotation(rng: np.random.Generator) -> Array:
-    """A rotation matrix (3, 3) about any axis, of determinant 1."""
+    """A rotation matrix (3, 3) about any axis, of determinant 1.
+
+    Args:
+        rng: random numbers.
+    """
     q, r = np.linalg.qr(rng.normal(size=(3, 3)))
     q = q * np.sign(np.diag(r))
     q[:, 0] *= np.sign(np.linalg.det(q))
