@@ -154,7 +154,7 @@ def test_a_representation_that_cannot_be_fitted(
     ("words", "says"),
     [
         (("--background", "gray"), "background: expected one of"),
-        (("--learning-rate", "-1"), "learning_rate: expected a positive number, got -1.0"),
+        (("--learning-rate", "-1"), "learning_rate: expected a finite number above 0, got -1.0"),
         (("--downscale", "100"), "100"),
     ],
 )
