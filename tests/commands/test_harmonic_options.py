@@ -36,7 +36,8 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
     assert options_for("dense_grid").resolution == 128
     assert Candidate("sparse_sh", 128).options(FitOptions()).resolution == 128
     shown = photograd("fit", "--help").out
-    assert "128; sparse_sh: 256" in " ".join(shown.replace("│", " ").split())
+    text = " ".join(shown.replace("│", " ").split())
+    assert "128; hash_grid: 512, nerf: 64, sparse_sh: 256" in text
 
 
 @pytest.mark.parametrize(

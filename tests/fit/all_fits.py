@@ -28,6 +28,8 @@ JOBS: dict[str, dict[str, Any]] = {
     "dense_sh": {"resolution": 12, "rays": 128, "steps": 8, "degree": 1},
     "sparse_sh": {"resolution": 16, "rays": 256, "steps": 20},
     "octree_sh": {"rays": 64, "steps": 5, "degree": 1},
+    "hash_grid": {"resolution": 32, "rays": 16, "steps": 18},  # looks at its cells twice
+    "nerf": {"resolution": 16, "rays": 16, "steps": 18},
     "gaussians": {"gaussians": 200, "steps": 12},
     "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
 }

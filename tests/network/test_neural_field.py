@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError, ShapeError
 from photograd.fields import HashGrid, Nerf
-from photograd.fields.march import MarchPolicy
-from photograd.network import FrequencyEncoding, HashEncoding
+from photograd.fields.hash_grid import HashGridPolicy
+from photograd.fields.nerf import NerfPolicy
+from photograd.fields.neural_field import CELLS, EVERY, PARTS
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.gradcheck import check_gradient
 
@@ -17,25 +18,25 @@ from support.bits import same_bits
 
 pytestmark = pytest.mark.usefixtures("core")
 
-POLICY = MarchPolicy(((-1.0, -0.8, -1.2), (1.0, 0.8, 1.2)), 0.05, density_activation="exp")
+BOX = ((-1.0, -0.8, -1.2), (1.0, 0.8, 1.2))
 OPTIONS = RenderOptions(jitter=True)
 
 
-def hash_grid(dtype: Any, **more: Any) -> HashGrid:
-    encoding = HashEncoding.geometric(levels=8, coarsest=4, finest=64, log2_rows=10)
-    return started(HashGrid(encoding, [64], [64, 64], POLICY, **more), dtype)
+def hash_grid(dtype: Any) -> HashGrid:
+    policy = HashGridPolicy(BOX, 0.05, levels=8, coarsest=4, finest=64, log2_rows=10)
+    return started(HashGrid.initial(policy, seed=3, sigma_t=0.5, dtype=dtype))
 
 
-def nerf(dtype: Any, **more: Any) -> Nerf:
-    return started(Nerf(FrequencyEncoding(6), [64] * 4, [32], POLICY, skip=2, **more), dtype)
+def nerf(dtype: Any) -> Nerf:
+    policy = NerfPolicy(BOX, 0.05, octaves=6)
+    return started(Nerf.initial(policy, seed=3, sigma_t=0.5, dtype=dtype))
 
 
-def started(field: Any, dtype: Any) -> Any:
-    field.initialize(seed=3, dtype=dtype)
+def started(field: Any) -> Any:
     random = np.random.default_rng(5)
     for name, values in field.params.items():
         noise = random.normal(scale=0.5 if name == "table" else 0.05, size=values.shape)
-        values[...] += noise.astype(dtype)
+        values[...] += noise.astype(values.dtype)
     return field
 
 
@@ -90,8 +91,9 @@ def test_float32_is_float64_rounded(make: Any) -> None:
     assert exact.opacity.min() > 0.05  # no ray misses the field
     np.testing.assert_allclose(got.color, exact.color, atol=2e-5)
     for name in d_exact:
-        off = np.abs(d_got[name] - d_exact[name]).max()
-        assert off < 1e-3 * np.abs(d_exact[name]).max(), (name, off)
+        # Where rounding moves a pre-activation across its kink, a sample's derivative differs.
+        off = np.linalg.norm(d_got[name] - d_exact[name]) / np.linalg.norm(d_exact[name])
+        assert off < 2e-3, (name, off)
 
 
 @each_field
@@ -99,16 +101,17 @@ def test_empty_cells_are_skipped_and_have_no_derivative(make: Any) -> None:
     field = make(np.float32)
     batch = rays(64, np.float32)
     everywhere, d_everywhere = gradients(field, batch)
-    field.occupancy = np.ones((8, 8, 8), bool)
+    field.reached = np.full((CELLS,) * 3, np.inf, np.float32)
     same, d_same = gradients(field, batch)
     np.testing.assert_array_equal(same.color, everywhere.color)
     for name in d_same:
         np.testing.assert_array_equal(d_same[name], d_everywhere[name])
-    field.occupancy[:] = False
+    field.reached[:] = 0.0
+    field.reached[0, 0, 0] = np.inf  # a corner that no ray meets
     nothing, d_nothing = gradients(field, batch)
     assert not nothing.color.any()
     assert not any(d.any() for d in d_nothing.values())
-    field.occupancy[:, :, 4:] = True  # x above the middle: [z, y, x]
+    field.reached[:, :, CELLS // 2 :] = np.inf  # x above the middle: [z, y, x]
     half, _ = gradients(field, batch)
     assert nothing.opacity is not None
     assert half.opacity is not None
@@ -155,10 +158,37 @@ def test_color_depends_on_the_direction_and_density_does_not() -> None:
     assert np.abs(outputs.color - other.color).max() > 1e-3
 
 
-def test_networks_that_do_not_fit_are_refused() -> None:
-    flat = HashEncoding([4], dimensions=2)
-    with pytest.raises(RangeError, match=r"HashGrid: hash: expected 3 dimensions"):
-        HashGrid(flat, [8], [8], POLICY)
+@each_field
+def test_cells_are_marked_by_the_densities_in_them(make: Any) -> None:
+    field = make(np.float32)
+    assert field.occupied() is None
+    for step in range(0, EVERY * PARTS, EVERY):
+        field.after_step({}, step)
+        field.after_step({}, step + 1)  # nothing in between
+    assert np.isfinite(field.reached).all()
+    low, high = field.box
+    k, j, i = np.meshgrid(*[(np.arange(CELLS) + 0.5) / CELLS] * 3, indexing="ij")
+    centers = low + np.stack([i, j, k], -1).reshape(-1, 3) * (high - low)
+    there = field.densities(centers.astype(np.float32)).reshape((CELLS,) * 3)
+    found = np.log(field.reached)
+    assert np.corrcoef(found.ravel(), np.log(there).ravel())[0, 1] > 0.8  # it varies within a cell, too
+    field.params["density"][:] = 0.0
+    _, bias = field.density.layers(field.params["density"])[-1]
+    bias[0] = -20.0
+    before = field.reached.copy()
+    for step in range(0, EVERY * PARTS, EVERY):
+        field.after_step({}, step)
+    np.testing.assert_allclose(field.reached, np.float32(0.95) * before, rtol=1e-6)
+
+
+def test_sizes_that_no_network_has_are_refused() -> None:
+    with pytest.raises(RangeError, match=r"NerfPolicy: width"):
+        NerfPolicy(BOX, 0.05, width=0)
+    with pytest.raises(RangeError, match=r"HashEncoding: log2_rows"):
+        HashGrid(HashGridPolicy(BOX, 0.05, log2_rows=30))
+    field = nerf(np.float32)
+    with pytest.raises(ShapeError, match=r"Nerf: color"):
+        Nerf(field.policy, {**field.params, "color": field.params["color"][1:]})
 
 
 @same_bits("neural fields", each=FIELDS, kernels=("perceptron_forward", "perceptron_backward"))

@@ -8,7 +8,8 @@ from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians_2d import Gaussians2D
-from photograd.fields.neural import HashGrid, Nerf
+from photograd.fields.hash_grid import HashGrid
+from photograd.fields.nerf import Nerf
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
