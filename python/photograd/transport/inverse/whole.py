@@ -29,7 +29,7 @@ def recover(
     [Kingma2015]. A path traced picture is noisy, and the derivative of a squared error is a product
     of two things that both contain that noise: how wrong a pixel is, and what changes it. If both
     come from the same random numbers, the mean of their product is not the product of their means,
-    and the search walks to a into where the picture is darker or smoother than the target, not to
+    and the search walks to a place where the picture is darker or smoother than the target, not to
     the target. Each step therefore draws two half pictures with independent seeds, and each half's
     derivative is taken of the other half's difference: the gradient is right on average, at any
     number of samples (`dual_buffer_loss`). Inverse path tracing: [Azinovic2019]; the adjoint of a
