@@ -71,10 +71,10 @@ def recover(
         >>> found.params["materials.red.albedo"].shape
         (3,)
     """
-    place = None if folder is None else Path(folder)
-    with run_folder("recover", place, FILE_NAME, resume=resume):
+    into = None if folder is None else Path(folder)
+    with run_folder("recover", into, FILE_NAME, resume=resume):
         job = InverseRendering(scene, targets, parameters, options)
-        if resume and place is not None:
-            job.load(place)
+        if resume and into is not None:
+            job.load(into)
         with progress_bar("recover", job, shown=bar) as on_step:
-            return job.run(place, on_step=on_step)
+            return job.run(into, on_step=on_step)
