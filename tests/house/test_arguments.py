@@ -26,7 +26,7 @@ DESCRIBED = (
     "photograd.transport",
 )
 """Packages whose functions describe all."""
-CEILING = {"photograd": 190, "photograd_course": 490}
+CEILING = {"photograd": 190, "photograd_course": 480}
 """Arguments of others that no sentence names. Lower a number when it has fallen."""
 
 ENTRY = re.compile(r"^ {4}(\*{0,2}\w+(?:, \*{0,2}\w+)*)(?: \(.*?\))?:", re.MULTILINE)
