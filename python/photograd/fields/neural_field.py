@@ -220,9 +220,9 @@ class NeuralField(Fittable):
         """The policy of a fit's options."""
         options, box = start.options, start.bounds.box
         extent = float((box[1] - box[0]).max())
-        low, high = box.tolist()
+        lower, upper = box.tolist()
         return policy(
-            (tuple(low), tuple(high)),
+            (tuple(lower), tuple(upper)),
             extent / (STEPS_ACROSS * options.steps_per_voxel),
             density_scale=STEPS_ACROSS / extent,
             **more,
@@ -354,8 +354,8 @@ class NeuralField(Fittable):
         """
         call = Arguments(f"{type(self).__name__}.densities", self.params["density"].dtype)
         points = call.array("points", points, ("N", 3))
-        low, high = np.asarray(self.policy.box, points.dtype)
-        unit = (points - low) / (high - low)
+        lower, upper = np.asarray(self.policy.box, points.dtype)
+        unit = (points - lower) / (upper - lower)
         return self._unit_densities(call.array("points", unit, ("N", 3), low=-1e-5, high=1 + 1e-5))
 
     def _unit_densities(self, unit: Array) -> Array:
