@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import photograd
 import pytest
-from photograd.errors import DtypeError, ShapeError
+from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fields import DenseGrid
 from photograd.representation import Outputs, ParamSpec, RayBatch, Representation
 
@@ -102,3 +102,40 @@ def test_a_missing_gradient_is_named() -> None:
 def test_what_is_no_representation_is_refused(given: Any) -> None:
     with pytest.raises(DtypeError, match=r"^check_gradients: representation: expected a Rep"):
         photograd.check_gradients(given)
+
+
+@pytest.mark.parametrize(
+    ("groups", "error", "words"),
+    [
+        ({}, RangeError, r"groups: expected \['matrix'\], got \[\]"),
+        ({"matrix": ParamSpec((7,), "1", (0, 1), 1, "none")}, ShapeError, "shape of 'matrix'"),
+        ({"matrix": ParamSpec((3, 4), "1", (50, 60), 1, "none")}, RangeError, "range of 'matrix'"),
+        ({"matrix": ParamSpec((3, 4), "1", (0, 1), 1, "wrld")}, RangeError, "frame of 'matrix'"),
+    ],
+)
+def test_groups_that_do_not_describe_the_parameters(
+    groups: Any, error: type[Exception], words: str
+) -> None:
+    class Misdescribed(Sky):
+        def param_groups(self) -> Mapping[str, ParamSpec]:
+            described: Mapping[str, ParamSpec] = groups
+            return described
+
+    with pytest.raises(error, match=rf"^sky\.param_groups: {words}"):
+        photograd.check_gradients(Misdescribed)
+
+
+def test_a_render_without_context_and_a_field_without_params() -> None:
+    class Bare(Sky):
+        def render(self, batch: RayBatch, **_: Any) -> Any:
+            return super().render(batch)[0]
+
+    with pytest.raises(DtypeError, match=r"^sky\.render: return value: expected a pair"):
+        photograd.check_gradients(Bare)
+
+    class Forgetful(Sky):
+        def __init__(self, matrix: Any) -> None:
+            del matrix
+
+    with pytest.raises(DtypeError, match=r"^sky: params: expected .*__init__"):
+        photograd.check_gradients(Forgetful)

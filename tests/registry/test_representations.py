@@ -13,6 +13,7 @@ from photograd.errors import RangeError, ShapeError
 from photograd.fields import representation
 from photograd.fields.march import MarchPolicy
 from photograd.representation import (
+    FRAMES,
     CanvasBatch,
     GradientProblem,
     Outputs,
@@ -69,7 +70,7 @@ def test_its_description_fits_its_arrays(name: str) -> None:
         assert spec.shape == values.shape
         assert spec.learning_rate > 0
         assert spec.range[0] <= values.min() <= values.max() <= spec.range[1]
-        assert spec.frame in ("world", "grid", "canvas", "none")
+        assert spec.frame in FRAMES
 
 
 @pytest.mark.parametrize("seed", [1, 2])

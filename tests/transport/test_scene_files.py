@@ -100,6 +100,8 @@ def test_a_file_says_what_the_scene_is(tmp_path: Path) -> None:
         ("field_of_view = 40", "field_of_view = 190", 5, "degrees between 0 and 180"),
         ("field_of_view = 40", 'field_of_view = "wide"', 5, "a finite number"),
         ("field_of_view = 40", "fov = 40", 2, "camera.field_of_view"),
+        ("field_of_view = 40", "feild_of_view = 40", 5, "camera.feild_of_view: expected a key"),
+        ("field_of_view = 40", "feild_of_view = 40", 5, "did you mean 'field_of_view'"),
         ("size = [8, 6]", "size = [8, 6]\nwidth = 3", 7, "camera.width: expected a key that is"),
         ("size = [8, 6]", "size = [8, 0]", 6, "width and height in pixels"),
         ("look_at = [0, 0.5, 0]", "look_at = [0, 9, 4]", 4, "not straight above"),

@@ -7,6 +7,7 @@ expensive to rebuild lives in C++ objects.
 """
 
 from photograd.representation.base import (
+    FRAMES,
     REGISTERED,
     Gradients,
     ParamSpec,
@@ -34,6 +35,7 @@ from photograd.representation.gradients import GradientChecks, GradientProblem, 
 
 __all__ = [
     "COPIES",
+    "FRAMES",
     "REGISTERED",
     "CanvasBatch",
     "FitInProgress",

@@ -30,6 +30,10 @@ def dense_gradient(gradient: Gradient, parameter: Array) -> Array:
     return dense
 
 
+FRAMES = ("world", "grid", "canvas", "none")
+"""Where positions among parameters may live."""
+
+
 @dataclass(frozen=True)
 class ParamSpec:
     """What an optimizer, a picture and a proof must know about one group of parameters.
@@ -37,7 +41,7 @@ class ParamSpec:
     Attributes:
         shape: of the group's array.
         unit: "1" for pure numbers, else as in "1/m".
-        range: values that make sense; proofs draw from its inside.
+        range: values that make sense.
         learning_rate: for Adam.
         frame: where positions live: "world", "grid", "canvas", or "none".
     """

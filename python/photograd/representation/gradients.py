@@ -25,8 +25,8 @@ from photograd_course.gradcheck import (
 )
 from photograd_course.gradcheck.probes import group_scale
 
-from photograd.errors import DtypeError, message
-from photograd.representation.base import Representation, dense_gradient
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.representation.base import FRAMES, Representation, dense_gradient
 from photograd.representation.batches import CanvasBatch, ImageBatch, Outputs, RenderOptions
 from photograd.types import Array
 
@@ -77,6 +77,7 @@ class GradientProblem:
         else:
             expected, got = "a Representation or its class", repr(representation)
             raise DtypeError(message("check_gradients", "representation", expected, got))
+        _require_described(self.field)
         self.params = {name: np.array(p, kind) for name, p in self.field.params.items()}
         self.field.params = dict(self.params)
         self.batch = self.field.example_batch(seed=seed) if batch is None else batch
@@ -93,7 +94,11 @@ class GradientProblem:
             options: of the rendering.
         """
         self.field.params = dict(params)
-        return self.field.render(batch, seed=SEED, step=STEP, options=options)
+        found: Any = self.field.render(batch, seed=SEED, step=STEP, options=options)
+        if not (isinstance(found, tuple) and len(found) == 2 and isinstance(found[0], Outputs)):
+            expected, got = "a pair (Outputs, context)", type(found).__name__
+            raise DtypeError(message(f"{self.field.name}.render", "return value", expected, got))
+        return found
 
     def forward(self, params: Mapping[str, Array]) -> dict[str, Array]:
         """The outputs that there are, by name.
@@ -168,6 +173,30 @@ class GradientProblem:
         return {name: (ends[0][name] - ends[1][name]) / (2 * width) for name in ends[0]}
 
 
+def _require_described(field: Representation) -> None:
+    """Raise unless `param_groups` describes the arrays of `params`."""
+    function = f"{field.name}.param_groups"
+    params: Any = getattr(field, "params", None)
+    if not isinstance(params, Mapping):
+        got = type(params).__name__
+        raise DtypeError(message(f"{field.name}", "params", "{group: array}, set in __init__", got))
+    groups = field.param_groups()
+    if set(groups) != set(params):
+        raise RangeError(message(function, "groups", f"{sorted(params)}", f"{sorted(groups)}"))
+    for name, spec in groups.items():
+        values = np.asarray(params[name])
+        if tuple(spec.shape) != values.shape:
+            raise ShapeError(message(function, f"shape of {name!r}", values.shape, spec.shape))
+        if not (
+            spec.range[0] <= values.min(initial=np.inf)
+            and values.max(initial=-np.inf) <= spec.range[1]
+        ):
+            got = f"{values.min():.4g} to {values.max():.4g}"
+            raise RangeError(message(function, f"range of {name!r}", f"{spec.range}", got))
+        if spec.frame not in FRAMES:
+            raise RangeError(message(function, f"frame of {name!r}", FRAMES, repr(spec.frame)))
+
+
 def _named(outputs: Outputs) -> dict[str, Array]:
     found = {name: getattr(outputs, name) for name in ("color", "opacity", "depth")}
     return {name: value for name, value in found.items() if value is not None}
@@ -232,7 +261,8 @@ def check_gradients(
     Raises:
         DtypeError: no `Representation`, or outputs or gradients that are not float64.
         ShapeError: a gradient that is missing or has another shape than its parameter.
-        RangeError: parameters that are not finite, or a representation that refuses `camera`.
+        RangeError: parameters that are not finite, or that `param_groups` does not describe, or a
+            representation that refuses `camera`.
 
     Example:
         >>> checks = photograd.check_gradients(photograd.DenseGrid, seed=1)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from photograd_course.suggest import choose_from
+from photograd_course.suggest import choose_from, nearest
 from photograd_course.toml_limits import without_strings
 
 from photograd.errors import Error, SceneError, message
@@ -143,8 +143,11 @@ class Node:
         if key in self.data:
             return self.data[key]
         if default is None:
-            near = choose_from(key, self.data) if self.data else None
-            raise self.wrong(key, "a value", "none", near)
+            misspelled = nearest(key, set(self.data) - self._asked)
+            if misspelled:
+                expected, remedy = "a key that is known here", f"did you mean {key!r}?"
+                raise self.wrong(misspelled, expected, "an unknown one", remedy)
+            raise self.wrong(key, "a value", "none")
         return default
 
     def table(self, key: str) -> Node:
