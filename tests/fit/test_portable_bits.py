@@ -55,4 +55,4 @@ def test_the_same_bits_without_any_instruction_that_can_be_switched_off(tmp_path
     assert same != ("X86_V3" in features)  # the switches do something
     assert len(plain) == 10
     assert plain == bare
-    assert np.unique(list(plain.values())).size == 8
+    assert np.unique(list(plain.values())).size == len(plain)

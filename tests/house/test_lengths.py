@@ -25,8 +25,12 @@ CAPS = {
 SUFFIXES = CPP_SUFFIXES | {".py", ".sh", ".toml"}
 # Rows of data, one for each wrong solution or system.
 DATA = {"mutants.toml", "systems.toml"}
-# Given scenes and a fit stand beside the tasks in the one file that students hand in.
-LONGER = {"assignments/07_path_tracing/path_tracing.py": 600}
+# What is given stands beside the tasks, and their solutions, in the one file that students hand in.
+LONGER = {
+    "assignments/07_path_tracing/path_tracing.py": 600,
+    "assignments/10_sparse_grids/sparse_grids.py": 430,
+    "assignments/15_gaussian_splatting/splatting.py": 410,
+}
 FUNCTION_CAP = 60
 COLUMNS = 100
 

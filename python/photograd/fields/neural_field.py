@@ -296,9 +296,9 @@ class NeuralField(Fittable):
         if self.reached is None:
             self.reached = np.full((CELLS,) * 3, np.inf, np.float32)
         look = step // EVERY
-        index = np.arange(look % PARTS, CELLS**3, PARTS)
+        index = np.arange(look % PARTS, CELLS * CELLS * CELLS, PARTS)
         u = [uniform(0, step=look, pixel=index, sample=0, dimension=k) for k in range(3)]
-        cell = np.stack([index % CELLS, index // CELLS % CELLS, index // CELLS**2], axis=1)
+        cell = np.stack([index % CELLS, index // CELLS % CELLS, index // (CELLS * CELLS)], axis=1)
         unit = ((cell + np.stack(u, axis=1)) / CELLS).astype(self.params["density"].dtype)
         found = self._unit_densities(unit).astype(np.float32)
         flat = self.reached.reshape(-1)
