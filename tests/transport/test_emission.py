@@ -232,7 +232,7 @@ def test_particles_have_numbers_and_scenes_have_lights() -> None:
     np.testing.assert_array_equal(whole.flux[40:], part.flux)
     other = emit_particles(tracer, 100, seed=2)
     assert (whole.directions != other.directions).any()
-    with pytest.raises(RangeError, match="particles: expected a whole number of at least 1"):
+    with pytest.raises(RangeError, match="count: expected a whole number of at least 1"):
         emit_particles(tracer, 0, seed=1)
     with pytest.raises(RangeError, match="a scene with lights"):
         emit_particles(PathTracer(stage(GRAY, lamp=0.0)), 1, seed=1)

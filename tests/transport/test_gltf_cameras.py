@@ -222,7 +222,7 @@ def test_a_scene_file_takes_camera_and_lights(tmp_path: Path) -> None:
     assert [type(x) for x in scene.lights] == [type(x) for x in before.lights]
     pictures = [PathTracer(s).render(spp=4, seed=3).mean for s in (before, scene)]
     np.testing.assert_allclose(pictures[1], pictures[0], rtol=1e-4)
-    moved = "rotate = [0, 90, 0]\nscale = 2\nplaces = [{}, { translate = [0, 5, 0] }]\n"
+    moved = "rotate = [0, 90, 0]\nscale = 2\ninstances = [{}, { translate = [0, 5, 0] }]\n"
     file.write_text(SCENE + moved, encoding="utf-8")
     point, spot, sun, higher = read_scene(file).lights[:4]
     assert isinstance(point, PointLight)

@@ -133,7 +133,7 @@ def test_turns_are_about_x_then_y_then_z() -> None:
         ("scale = 1.2", "scale = [1, 2, 1]", 21, "sdfs.ball.scale"),
         ("scale = 1.2", "scale = 0", 21, "one factor above 0"),
         ('kind = "torus"', 'kind = "donut"', 37, "sdfs.ring.kind: expected one of sphere, box"),
-        ("tube = 0.1", "tubes = 0.1", 36, "sdfs.ring.tube"),
+        ("tube = 0.1", "tubes = 0.1", 39, "sdfs.ring.tube"),
         ("tube = 0.1", "tube = 0.1\nwidth = 2", 40, "sdfs.ring.width: expected a key"),
         ('of = ["brick", "ring"]', 'of = ["brick", "rink"]', 30, "names among dish, ball"),
         ('of = ["brick", "ring"]', 'of = ["brick"]', 30, "a list of two names or more"),
