@@ -50,6 +50,8 @@ DECAY = 0.95
 """Of a cell's maximum, from look to look."""
 STEPS_ACROSS = 128
 """Steps of a march across the box, times the option `steps_per_voxel`."""
+UNSEEN = 1e30
+"""The maximum of a cell that was not looked at yet; it is evaluated."""
 OPAQUE = 0.01
 """Opacity of a step that makes a cell occupied, wherever the mean of all cells is above it."""
 
@@ -256,7 +258,7 @@ class NeuralField(Fittable):
     def state(self) -> dict[str, Array]:
         """The running maximum of each cell."""
         reached = (
-            np.full((CELLS,) * 3, np.inf, np.float32) if self.reached is None else self.reached
+            np.full((CELLS,) * 3, UNSEEN, np.float32) if self.reached is None else self.reached
         )
         return {"reached": reached}
 
@@ -294,7 +296,7 @@ class NeuralField(Fittable):
         if step % EVERY:
             return
         if self.reached is None:
-            self.reached = np.full((CELLS,) * 3, np.inf, np.float32)
+            self.reached = np.full((CELLS,) * 3, UNSEEN, np.float32)
         look = step // EVERY
         index = np.arange(look % PARTS, CELLS * CELLS * CELLS, PARTS)
         u = [uniform(0, step=look, pixel=index, sample=0, dimension=k) for k in range(3)]
@@ -302,7 +304,7 @@ class NeuralField(Fittable):
         unit = ((cell + np.stack(u, axis=1)) / CELLS).astype(self.params["density"].dtype)
         found = self._unit_densities(unit).astype(np.float32)
         flat = self.reached.reshape(-1)
-        before = np.where(np.isfinite(flat[index]), flat[index] * np.float32(DECAY), 0)
+        before = np.where(flat[index] < UNSEEN, flat[index] * np.float32(DECAY), 0)
         flat[index] = np.maximum(before, found)
 
     def render(
