@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Subject, hidden_check
 
-from ..common import EXACT, gates_spec
+from ..common import EXACT, gates, gates_spec
 
 
 def multiplied(t, n):
@@ -32,6 +32,6 @@ def sums_and_products_at_random(t):
     a, b = t.rng.normal(0.0, 3.0, (2, 100))
     ones = np.ones(100)
     for op, right, slopes in (("add", a + b, [ones, ones]), ("mul", a * b, [b, a])):
-        found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
+        found = gates(t, op, a, b)
         t.close(f"values of {op}", found["values"], right)
         t.close(f"local derivatives of {op}", found["slopes"], np.stack(slopes, 1))
