@@ -47,6 +47,8 @@ class AssignmentBuild:
         bar: shows how far a long computation has come.
         haystacks: name to text of what students can see besides this kit: the wheels.
         siblings: ids of the assignments beside it.
+        public_from: a build of this folder with another secret; its outcomes of public checks, whose seeds
+            no secret decides, count here too. Or None.
     """
 
     folder: Path
@@ -55,6 +57,7 @@ class AssignmentBuild:
     bar: Bar = no_bar
     haystacks: Mapping[str, str] = field(default_factory=dict)
     siblings: frozenset[str] = frozenset()
+    public_from: AssignmentBuild | None = None
 
     @cached_property
     def manifest(self) -> Manifest:
@@ -139,17 +142,19 @@ class AssignmentBuild:
     def mutant_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each named mutant that can be applied."""
         texts = {m.name: m.apply(self.source) for m in self.mutants}
-        return self._judge_all("mutants", texts)
+        known = self.public_from.mutant_verdicts if self.public_from else {}
+        return self._judge_all("mutants", texts, known)
 
     @cached_property
     def alternative_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each alternative."""
-        return self._judge_all("alternatives", self.alternatives)
+        known = self.public_from.alternative_verdicts if self.public_from else {}
+        return self._judge_all("alternatives", self.alternatives, known)
 
     @cached_property
     def automatic_verdicts(self) -> list[Verdict]:
         """What becomes of each automatic mutant, up to the first check that notices it."""
-        jobs = [Job(each.text, first=True) for each in self.automatic]
+        jobs = [Job(each.text, first=True, task=each.task) for each in self.automatic]
         return self.judge_jobs("automatic mutants", jobs)
 
     def judge_jobs(self, title: str, jobs: Sequence[Job]) -> list[Verdict]:
@@ -159,6 +164,20 @@ class AssignmentBuild:
         with self.bar(f"{self.manifest.id} {title}", len(jobs)) as done:
             return self.judge.judge_all(jobs, done)
 
-    def _judge_all(self, title: str, texts: Mapping[str, str]) -> dict[str, Verdict]:
-        verdicts = self.judge_jobs(title, [Job(text) for text in texts.values()])
-        return dict(zip(texts, verdicts, strict=True))
+    def _judge_all(
+        self, title: str, texts: Mapping[str, str], known: Mapping[str, Verdict]
+    ) -> dict[str, Verdict]:
+        """The verdicts; outcomes of public checks from ``known``, where it is not empty."""
+        public = {check.id for check in self.checks if check.visibility == "public"}
+        before = {name: verdict.of(public) for name, verdict in known.items()}
+        jobs = [
+            Job(text, passed=before[name].passed, failed=before[name].lost)
+            if name in before
+            else Job(text)
+            for name, text in texts.items()
+        ]
+        verdicts = dict(zip(texts, self.judge_jobs(title, jobs), strict=True))
+        return {
+            name: before[name].followed_by(verdict) if name in before else verdict
+            for name, verdict in verdicts.items()
+        }

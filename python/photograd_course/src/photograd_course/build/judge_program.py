@@ -1,12 +1,15 @@
-"""Judge one text of an assignment's module in a process of its own: trusted code, run apart.
+"""Judge texts of an assignment's module, each in a process of its own: trusted code, run apart.
 
-Reads a job as JSON from stdin and writes an outcome a line to stdout, each as soon as it is known,
-so that a reader of the bar knows in which check an endless mutant hangs.
+Reads an order and then jobs, JSON in a line each, from stdin, and writes an outcome a line to
+stdout, each as soon as it is known: the reader learns in which check an endless mutant hangs. What
+all jobs need is imported and read once. Where the system can, each job is a fork of that, so that
+nothing of one text reaches the next.
 """
 
 from __future__ import annotations
 
 import contextlib
+import gc
 import json
 import math
 import os
@@ -18,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TextIO
 
-from ..assignment.bundle import read_folder
+from ..assignment.bundle import Bundle, read_folder
 from ..grading.check import Check
 from ..grading.failures import CheckFailed
 from ..grading.local import LocalStudent
@@ -34,34 +37,54 @@ class _Enough(Exception):
 
 
 def main() -> None:
-    """Do the job on stdin."""
-    job = json.loads(sys.stdin.read())
+    """Do the jobs on stdin, one after another; without fork only the first."""
+    order = json.loads(sys.stdin.readline())
+    bundle = read_folder(Path(order["folder"]), secret=bytes.fromhex(order["secret"]))
     results = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what a mutant prints is no result
+    gc.freeze()  # a collection in a fork would copy every page
+    for line in sys.stdin:
+        if not hasattr(os, "fork"):
+            _do(json.loads(line), bundle, results)
+            return
+        child = os.fork()
+        if child == 0:
+            try:
+                _do(json.loads(line), bundle, results)
+            except BaseException:  # this process must not go on as its parent would
+                sys.excepthook(*sys.exc_info())
+            finally:
+                os._exit(0)
+        os.waitpid(child, 0)
+        results.write('\n{"over": "the job"}\n')  # on a line of its own, wherever the job ended
+        results.flush()
+
+
+def _do(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
     _limit(job["seconds"])
     with contextlib.suppress(_Enough):
-        judge(job, results)
+        judge(job, bundle, results)
     results.write('{"end": true}\n')
     results.flush()
 
 
-def judge(job: Mapping[str, Any], results: TextIO) -> None:
+def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
     """Run the checks of a job.
 
     Args:
-        job: "folder", "secret" (hex), "text" of the module, "first" (stop at the first failure),
-            "seconds" of processor time, "passed" and "failed": ids of checks whose outcome is known
-            and that do not run again.
+        job: "text" of the module, "first" (stop at the first failure), "task" (whose checks run
+            first, or ""), "seconds" of processor time, "passed" and "failed": ids of checks whose
+            outcome is known and that do not run again.
+        bundle: of the assignment.
         results: gets a JSON object a line.
     """
-    bundle = read_folder(Path(job["folder"]), secret=bytes.fromhex(job["secret"]))
     sources = {**bundle.brought, bundle.manifest.module: job["text"]}
     if bundle.adapters is not None:
         sources["adapters"] = bundle.adapters
     known = set(job["passed"]) | set(job["failed"])
     checks = [
         replace(check, body=_fail) if check.id in job["failed"] else check
-        for check in bundle.checks
+        for check in sorted(bundle.checks, key=lambda check: check.task != job["task"])
         if check.id not in job["passed"]
     ]
 
