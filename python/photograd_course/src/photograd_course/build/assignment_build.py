@@ -47,8 +47,8 @@ class AssignmentBuild:
         bar: shows how far a long computation has come.
         haystacks: name to text of what students can see besides this kit: the wheels.
         siblings: ids of the assignments beside it.
-        public_from: a build of this folder with another secret; its outcomes of public checks, whose seeds
-            no secret decides, count here too. Or None.
+        public_from: a build of this folder with another secret; its verdicts on public checks count
+            here too, since no secret decides their seeds. Or None.
     """
 
     folder: Path
