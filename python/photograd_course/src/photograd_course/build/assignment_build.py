@@ -21,7 +21,8 @@ from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
 
-LEAST_SECONDS = 8.0  # of processor time for one text, however short the solution takes
+# Of processor time, at least: for one check of a mutant, and of an alternative.
+LEAST_SECONDS, LEAST_PATIENT = 3.0, 8.0
 PATIENCE = 10.0  # times the solution's own seconds
 
 
@@ -124,9 +125,10 @@ class AssignmentBuild:
         """Runs texts, as long as `PATIENCE` allows."""
         first = Judge(self.folder, self.secret, self.cache, seconds=600.0)
         solution = first.judge(Job(self.source))
-        spent = sum(float(each["seconds"]) for each in solution.outcomes)
-        seconds = max(LEAST_SECONDS, PATIENCE * spent)
-        return Judge(self.folder, self.secret, self.cache, seconds, first.ran)
+        spent = {each["id"]: PATIENCE * float(each["cpu"]) for each in solution.outcomes}
+        seconds = max(LEAST_PATIENT, sum(spent.values()))
+        seconds_of = {name: max(LEAST_SECONDS, each) for name, each in spent.items()}
+        return Judge(self.folder, self.secret, self.cache, seconds, seconds_of, first.ran)
 
     @cached_property
     def solution_verdict(self) -> Verdict:
@@ -149,7 +151,7 @@ class AssignmentBuild:
     def alternative_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each alternative."""
         known = self.public_from.alternative_verdicts if self.public_from else {}
-        return self._judge_all("alternatives", self.alternatives, known)
+        return self._judge_all("alternatives", self.alternatives, known, patient=True)
 
     @cached_property
     def automatic_verdicts(self) -> list[Verdict]:
@@ -165,19 +167,19 @@ class AssignmentBuild:
             return self.judge.judge_all(jobs, done)
 
     def _judge_all(
-        self, title: str, texts: Mapping[str, str], known: Mapping[str, Verdict]
+        self,
+        title: str,
+        texts: Mapping[str, str],
+        known: Mapping[str, Verdict],
+        *,
+        patient: bool = False,
     ) -> dict[str, Verdict]:
         """The verdicts; outcomes of public checks from ``known``, where it is not empty."""
         public = {check.id for check in self.checks if check.visibility == "public"}
-        before = {name: verdict.of(public) for name, verdict in known.items()}
+        before = {name: known.get(name, Verdict(())).of(public) for name in texts}
         jobs = [
-            Job(text, passed=before[name].passed, failed=before[name].lost)
-            if name in before
-            else Job(text)
+            Job(text, passed=before[name].passed, failed=before[name].lost, patient=patient)
             for name, text in texts.items()
         ]
         verdicts = dict(zip(texts, self.judge_jobs(title, jobs), strict=True))
-        return {
-            name: before[name].followed_by(verdict) if name in before else verdict
-            for name, verdict in verdicts.items()
-        }
+        return {name: before[name].followed_by(verdict) for name, verdict in verdicts.items()}

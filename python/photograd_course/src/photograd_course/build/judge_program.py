@@ -14,6 +14,7 @@ import json
 import math
 import os
 import sys
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from importlib import import_module
@@ -61,7 +62,8 @@ def main() -> None:
 
 
 def _do(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
-    _limit(job["seconds"])
+    _limit_memory()
+    _limit_time(job["seconds"])
     with contextlib.suppress(_Enough):
         judge(job, bundle, results)
     results.write('{"end": true}\n')
@@ -73,14 +75,16 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
 
     Args:
         job: "text" of the module, "first" (stop at the first failure), "task" (whose checks run
-            first, or ""), "seconds" of processor time, "passed" and "failed": ids of checks whose
-            outcome is known and that do not run again.
+            first, or ""), "passed" and "failed": ids of checks whose outcome is known and that do
+            not run again, "seconds" of processor time for one check, "seconds_of" those that have
+            a time of their own, by id.
         bundle: of the assignment.
         results: gets a JSON object a line.
     """
     sources = {**bundle.brought, bundle.manifest.module: job["text"]}
     if bundle.adapters is not None:
         sources["adapters"] = bundle.adapters
+    began = time.process_time()
     known = set(job["passed"]) | set(job["failed"])
     checks = [
         replace(check, body=_fail) if check.id in job["failed"] else check
@@ -91,7 +95,8 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
     def report(outcome: Outcome) -> None:
         if outcome.id in known:
             return
-        results.write(json.dumps(outcome.to_json(), default=_plain) + "\n")
+        found = {**outcome.to_json(), "cpu": time.process_time() - began}
+        results.write(json.dumps(found, default=_plain) + "\n")
         results.flush()
         if job["first"] and outcome.status is not Status.PASSED:
             raise _Enough
@@ -100,6 +105,9 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
         """The check, telling that it begins: what runs when time is up, is lost."""
 
         def body(trial: Trial) -> None:
+            nonlocal began
+            began = time.process_time()
+            _limit_time(job["seconds_of"].get(check.id, job["seconds"]))
             results.write(json.dumps({"begins": check.id}) + "\n")
             results.flush()
             check.body(trial)
@@ -122,14 +130,21 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-def _limit(seconds: float) -> None:
-    """Bound memory and processor time, where the system can; a busy machine changes neither."""
+def _limit_memory() -> None:
+    """Bound memory, where the system can."""
     if find_spec("resource") is not None:
         resource = import_module("resource")
-        cpu = math.ceil(seconds)
         with contextlib.suppress(ValueError, OSError):
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-            resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 1))
+
+
+def _limit_time(seconds: float) -> None:
+    """Bound processor time from now on, where the system can; a busy machine does not change it."""
+    if find_spec("resource") is not None:
+        resource = import_module("resource")
+        until = math.ceil(time.process_time() + seconds)
+        with contextlib.suppress(ValueError, OSError):
+            resource.setrlimit(resource.RLIMIT_CPU, (until, resource.RLIM_INFINITY))
 
 
 if __name__ == "__main__":

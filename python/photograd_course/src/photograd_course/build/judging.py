@@ -6,7 +6,7 @@ import hashlib
 import json
 import sys
 import threading
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, replace
@@ -71,13 +71,17 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Job:
-    """One text to judge; see `judge_program.judge`."""
+    """One text to judge; see `judge_program.judge`.
+
+    `patient`: it may be slower than the solution; all checks have the same time.
+    """
 
     text: str
     first: bool = False
     task: str = ""
     passed: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
+    patient: bool = False
 
 
 @dataclass
@@ -88,7 +92,8 @@ class Judge:
         folder: its source.
         secret: seeds of hidden checks.
         cache: a folder for results, or None.
-        seconds: of processor time for one text; more counts as an endless loop.
+        seconds: of processor time for one check; more counts as an endless loop.
+        seconds_of: the same, by id, for checks that have a time of their own.
         ran: how many texts were run rather than found in the cache.
     """
 
@@ -96,6 +101,7 @@ class Judge:
     secret: bytes = RULES_SECRET
     cache: Path | None = None
     seconds: float = 60.0
+    seconds_of: Mapping[str, float] = field(default_factory=dict)
     ran: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _known: str = ""
@@ -172,7 +178,9 @@ class Judge:
 
     def _once(self, job: Job, program: Program) -> tuple[list[dict[str, Any]], str | None]:
         """Outcomes of one run, and the check in which it hung or died."""
-        lines, problem = program.run({**asdict(job), "seconds": self.seconds}, WALL * self.seconds)
+        seconds_of = {} if job.patient else dict(self.seconds_of)
+        order = {**asdict(job), "seconds": self.seconds, "seconds_of": seconds_of}
+        lines, problem = program.run(order, WALL * self.seconds)
         outcomes = [line for line in lines if "status" in line]
         if any("end" in line for line in lines):
             return outcomes, None
