@@ -17,6 +17,7 @@ from .equivalents import Equivalent, read_equivalents
 from .judging import RULES_SECRET, Job, Judge, Verdict
 from .named import NamedMutant, read_alternatives, read_mutants
 from .public import wheel_kits
+from .reach import changed_functions
 from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
@@ -131,6 +132,22 @@ class AssignmentBuild:
         return Judge(self.folder, self.secret, self.cache, seconds, seconds_of, first.ran)
 
     @cached_property
+    def entered(self) -> dict[str, frozenset[str]]:
+        """The solution's functions that each check enters, by the check's id."""
+        verdict = self.judge.judge(Job(self.source, trace=True, patient=True))
+        return {each["id"]: frozenset(each["entered"]) for each in verdict.outcomes}
+
+    def unreached(self, text: str) -> tuple[str, ...]:
+        """Checks that enter no function in which a text differs from the solution.
+
+        What such a check runs is the solution, so that it passes.
+        """
+        changed = changed_functions(self.source, text)
+        if changed is None:
+            return ()
+        return tuple(check for check, entered in self.entered.items() if not entered & changed)
+
+    @cached_property
     def solution_verdict(self) -> Verdict:
         """What becomes of the solution."""
         return self.judge.judge(Job(self.source))
@@ -156,7 +173,10 @@ class AssignmentBuild:
     @cached_property
     def automatic_verdicts(self) -> list[Verdict]:
         """What becomes of each automatic mutant, up to the first check that notices it."""
-        jobs = [Job(each.text, first=True, task=each.task) for each in self.automatic]
+        jobs = [
+            Job(each.text, first=True, task=each.task, passed=self.unreached(each.text))
+            for each in self.automatic
+        ]
         return self.judge_jobs("automatic mutants", jobs)
 
     def judge_jobs(self, title: str, jobs: Sequence[Job]) -> list[Verdict]:
@@ -178,7 +198,12 @@ class AssignmentBuild:
         public = {check.id for check in self.checks if check.visibility == "public"}
         before = {name: known.get(name, Verdict(())).of(public) for name in texts}
         jobs = [
-            Job(text, passed=before[name].passed, failed=before[name].lost, patient=patient)
+            Job(
+                text,
+                passed=(*before[name].passed, *self.unreached(text)),
+                failed=before[name].lost,
+                patient=patient,
+            )
             for name, text in texts.items()
         ]
         verdicts = dict(zip(texts, self.judge_jobs(title, jobs), strict=True))

@@ -20,6 +20,7 @@ from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from types import FrameType
 from typing import Any, TextIO
 
 from ..assignment.bundle import Bundle, read_folder
@@ -77,7 +78,8 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
         job: "text" of the module, "first" (stop at the first failure), "task" (whose checks run
             first, or ""), "passed" and "failed": ids of checks whose outcome is known and that do
             not run again, "seconds" of processor time for one check, "seconds_of" those that have
-            a time of their own, by id.
+            a time of their own, by id, "trace" (with each outcome the names of the module's
+            functions that its check has entered).
         bundle: of the assignment.
         results: gets a JSON object a line.
     """
@@ -85,6 +87,9 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
     if bundle.adapters is not None:
         sources["adapters"] = bundle.adapters
     began = time.process_time()
+    entered: set[str] = set()
+    if job["trace"]:
+        sys.setprofile(_trace(bundle.manifest.module, entered))
     known = set(job["passed"]) | set(job["failed"])
     checks = [
         replace(check, body=_fail) if check.id in job["failed"] else check
@@ -96,6 +101,9 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
         if outcome.id in known:
             return
         found = {**outcome.to_json(), "cpu": time.process_time() - began}
+        if job["trace"]:
+            found["entered"] = sorted(entered)
+            entered.clear()
         results.write(json.dumps(found, default=_plain) + "\n")
         results.flush()
         if job["first"] and outcome.status is not Status.PASSED:
@@ -119,6 +127,16 @@ def judge(job: Mapping[str, Any], bundle: Bundle, results: TextIO) -> None:
         return LocalStudent(sources, substitutes)
 
     run_checks([announce(each) for each in checks], bundle.setting, open_student, on_outcome=report)
+
+
+def _trace(module: str, entered: set[str]) -> Callable[[FrameType, str, Any], None]:
+    """Notes which functions of the module are entered."""
+
+    def note(frame: FrameType, event: str, _: Any) -> None:
+        if event == "call" and frame.f_globals.get("__name__") == module:
+            entered.add(frame.f_code.co_qualname.partition(".<locals>")[0])
+
+    return note
 
 
 def _fail(trial: Trial) -> None:

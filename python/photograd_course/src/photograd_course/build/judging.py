@@ -73,7 +73,8 @@ class Verdict:
 class Job:
     """One text to judge; see `judge_program.judge`.
 
-    `patient`: it may be slower than the solution; all checks have the same time.
+    `patient`: it may be slower than the solution; all checks have the same time. `trace`: the
+    verdict tells which functions each check enters.
     """
 
     text: str
@@ -82,6 +83,7 @@ class Job:
     passed: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
     patient: bool = False
+    trace: bool = False
 
 
 @dataclass
