@@ -18,7 +18,7 @@ def the_larger_input_takes_all(t):
     require_slopes(t, "max", a, b)
 
 
-@check("02.2.tie", points=3)
+@check("02.2.tie", points=3, sole="says that only ties are wrong")
 def a_tie_is_settled(t):
     """At a tie the second input gets the derivative; finite differences would give 1/2 each."""
     x = float(t.rng.uniform(1.5, 3.0))
