@@ -22,7 +22,7 @@ from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
 
-# Of processor time, at least: for one check of a mutant, and of an alternative.
+# Of processor time, at least: for one check of an automatic mutant, and of what may be slower.
 LEAST_SECONDS, LEAST_PATIENT = 3.0, 8.0
 PATIENCE = 10.0  # times the solution's own seconds
 
@@ -168,7 +168,7 @@ class AssignmentBuild:
     def alternative_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each alternative."""
         known = self.public_from.alternative_verdicts if self.public_from else {}
-        return self._judge_all("alternatives", self.alternatives, known, patient=True)
+        return self._judge_all("alternatives", self.alternatives, known)
 
     @cached_property
     def automatic_verdicts(self) -> list[Verdict]:
@@ -187,12 +187,7 @@ class AssignmentBuild:
             return self.judge.judge_all(jobs, done)
 
     def _judge_all(
-        self,
-        title: str,
-        texts: Mapping[str, str],
-        known: Mapping[str, Verdict],
-        *,
-        patient: bool = False,
+        self, title: str, texts: Mapping[str, str], known: Mapping[str, Verdict]
     ) -> dict[str, Verdict]:
         """The verdicts; outcomes of public checks from ``known``, where it is not empty."""
         public = {check.id for check in self.checks if check.visibility == "public"}
@@ -202,7 +197,7 @@ class AssignmentBuild:
                 text,
                 passed=(*before[name].passed, *self.unreached(text)),
                 failed=before[name].lost,
-                patient=patient,
+                patient=True,
             )
             for name, text in texts.items()
         ]

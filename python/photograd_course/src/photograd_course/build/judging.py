@@ -73,7 +73,7 @@ class Verdict:
 class Job:
     """One text to judge; see `judge_program.judge`.
 
-    `patient`: it may be slower than the solution; all checks have the same time. `trace`: the
+    `patient`: it may be slower than the solution, and each check has the whole of its time. `trace`: the
     verdict tells which functions each check enters.
     """
 
