@@ -73,8 +73,8 @@ class Verdict:
 class Job:
     """One text to judge; see `judge_program.judge`.
 
-    `patient`: it may be slower than the solution, and each check has the whole of its time. `trace`: the
-    verdict tells which functions each check enters.
+    `patient`: it may be slower than the solution; each check has the time of all of them.
+    `trace`: the verdict tells which functions each check enters.
     """
 
     text: str
