@@ -16,7 +16,7 @@ import functools
 import io
 import re
 import tempfile
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -112,13 +112,9 @@ def _run(
     sources = bundle.hand(bundle.solution_files(text)).sources
     alone: list[Outcome] = []
     end = run_checks(
-        checks, bundle.setting, lambda given: _open(sources, given), on_outcome=alone.append
+        checks, bundle.setting, lambda given: LocalStudent(sources, given), on_outcome=alone.append
     )
     return alone, end
-
-
-def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
-    return LocalStudent(sources, given)
 
 
 def lost(outcomes: list[Outcome]) -> set[str]:
