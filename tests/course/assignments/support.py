@@ -104,11 +104,8 @@ def _run(
 ) -> tuple[list[Outcome], list[Outcome]]:
     """Outcomes of checks by themselves, and in the end."""
     bundle = bundle_of(folder, secret)
-    checks = [
-        each
-        for each in bundle.checks
-        if (not tasks or each.task in tasks) and (secret == SECRET or each.visibility != "public")
-    ]
+    seeded = [each for each in bundle.checks if secret == SECRET or each.visibility != "public"]
+    checks = [each for each in seeded if not tasks or each.task in tasks]
     sources = bundle.hand(bundle.solution_files(text)).sources
     alone: list[Outcome] = []
     end = run_checks(
