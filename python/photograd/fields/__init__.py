@@ -10,6 +10,7 @@ from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.nerf import Nerf
+from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
@@ -28,7 +29,9 @@ __all__ = [
     "GaussianScene",
     "Gaussians2D",
     "HashGrid",
+    "ImagePolicy",
     "Nerf",
+    "NeuralImage",
     "OctreeSh",
     "Points",
     "SparseSh",

@@ -36,6 +36,7 @@ from photograd.fields.march import (
     require_finite_image,
 )
 from photograd.network import FrequencyEncoding, HashEncoding, Perceptron
+from photograd.network.explosion import require_bounded
 from photograd.representation import Fittable, Memory, Outputs, RayBatch, RenderOptions, Start
 from photograd.types import Array
 
@@ -150,6 +151,10 @@ class NeuralField(Fittable):
         )
         self.reached: Array | None = None
         e = self.encoding
+        self._parts: dict[str, Perceptron | HashEncoding]
+        self._parts = {"density": self.density, "color": self.color}
+        if isinstance(e, HashEncoding):
+            self._parts["table"] = e
         self._settings = Arguments(type(self).__name__).run(
             _core.NeuralSettings,
             e.settings if isinstance(e, HashEncoding) else None,
@@ -292,8 +297,12 @@ class NeuralField(Fittable):
         return occupied
 
     def after_step(self, rates: Mapping[str, float], step: int) -> None:
-        """Look at a part of the cells, at random places in them, every few steps."""
+        """Look at a part of the cells, at random places in them, every few steps.
+
+        Raises Error if a layer or a level has exploded, and names it.
+        """
         del rates
+        require_bounded("fit", self.params, self._parts)
         if step % EVERY:
             return
         if self.reached is None:
