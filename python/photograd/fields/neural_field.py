@@ -32,6 +32,7 @@ from photograd.fields.march import (
     check_camera_adjoint,
     checked_rays,
     checked_values,
+    cotangent_arrays,
     require_finite_image,
 )
 from photograd.network import FrequencyEncoding, HashEncoding, Perceptron
@@ -329,12 +330,8 @@ class NeuralField(Fittable):
         The camera adjoint is the interior term: where a ray meets the box is held fixed.
         """
         c = context
-        rays, dtype = len(c.rays[2]), c.parameters[1].dtype
-        d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
-        d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
-        cotangents = [
-            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
-        ]
+        function, dtype = f"{self.name}.render_backward", c.parameters[1].dtype
+        cotangents = cotangent_arrays(function, d_outputs, len(c.rays[2]), dtype)
         d_parameters = tuple(np.zeros_like(values) for values in c.parameters)
         d_rays = tuple(np.zeros_like(a) for a in c.rays[:2]) if c.camera_adjoint else None
         of_field = (self._settings, c.parameters, c.occupancy, c.march, c.rays)
