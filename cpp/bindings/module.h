@@ -1,7 +1,7 @@
 // The parts of the module _core: one bind_<part> function a file. No mathematics in this folder.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "pybind.h"
 
 namespace photograd {
 

@@ -24,10 +24,12 @@ from photograd._descend import LOSS_COLUMN, progress_bar, run_folder
 from photograd._fit_options import BACKGROUNDS, DECODES, DENSITY_CONTROLS, MAX_DEGREE, FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
+from photograd.commands.fit_image import fit_picture, is_picture
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
+    is_given,
     out_option,
     stop_on_signals,
     use_threads,
@@ -195,16 +197,23 @@ def fit(
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
-    """Recover a scene from photographs with known cameras.
+    """Recover a scene from photographs with known cameras, or fit a network to a picture.
 
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
     comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
 
+    In the place of CAPTURE, a picture (.png, .jpg) is fitted by a network behind an encoding:
+    --representation hash_grid, frequencies, nerf or one_blob, --resolution of the finest level,
+    --rays pixels a step. OUT then holds image.npz and picture.png.
+
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
+    if is_picture(capture):
+        fit_picture(context, capture, out)
+        return
     if not resume:
         require_startable(representation)
     context.with_resource(run_folder("fit", out, FILE_NAME, resume=resume, argument="--out"))
@@ -287,12 +296,6 @@ def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = Fal
         f"split {loaded.split_hash()}"
     )
     return loaded
-
-
-def is_given(context: typer.Context, name: str) -> bool:
-    """Whether the command line names an option."""
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
 
 
 def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:

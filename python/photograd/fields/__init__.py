@@ -11,6 +11,7 @@ from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.leaf_codes import LeafCodes
 from photograd.fields.nerf import Nerf
+from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.plenoctree import PlenOctree
 from photograd.fields.points import Points
@@ -30,8 +31,10 @@ __all__ = [
     "GaussianScene",
     "Gaussians2D",
     "HashGrid",
+    "ImagePolicy",
     "LeafCodes",
     "Nerf",
+    "NeuralImage",
     "OctreeSh",
     "PlenOctree",
     "Points",

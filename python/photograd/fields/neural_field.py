@@ -32,9 +32,11 @@ from photograd.fields.march import (
     check_camera_adjoint,
     checked_rays,
     checked_values,
+    cotangent_arrays,
     require_finite_image,
 )
 from photograd.network import FrequencyEncoding, HashEncoding, Perceptron
+from photograd.network.explosion import require_bounded
 from photograd.representation import Fittable, Memory, Outputs, RayBatch, RenderOptions, Start
 from photograd.types import Array
 
@@ -150,6 +152,10 @@ class NeuralField(Fittable):
         )
         self.reached: Array | None = None
         e = self.encoding
+        self._parts: dict[str, Perceptron | HashEncoding]
+        self._parts = {"density": self.density, "color": self.color}
+        if isinstance(e, HashEncoding):
+            self._parts["table"] = e
         self._settings = Arguments(type(self).__name__).run(
             _core.NeuralSettings,
             e.settings if isinstance(e, HashEncoding) else None,
@@ -292,8 +298,12 @@ class NeuralField(Fittable):
         return occupied
 
     def after_step(self, rates: Mapping[str, float], step: int) -> None:
-        """Look at a part of the cells, at random places in them, every few steps."""
+        """Look at a part of the cells, at random places in them, every few steps.
+
+        Raises Error if a layer or a level has exploded, and names it.
+        """
         del rates
+        require_bounded("fit", self.params, self._parts)
         if step % EVERY or self.frozen:
             return
         if self.reached is None:
@@ -339,12 +349,8 @@ class NeuralField(Fittable):
         The camera adjoint is the interior term: where a ray meets the box is held fixed.
         """
         c = context
-        rays, dtype = len(c.rays[2]), c.parameters[1].dtype
-        d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
-        d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
-        cotangents = [
-            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
-        ]
+        function, dtype = f"{self.name}.render_backward", c.parameters[1].dtype
+        cotangents = cotangent_arrays(function, d_outputs, len(c.rays[2]), dtype)
         d_parameters = tuple(np.zeros_like(values) for values in c.parameters)
         d_rays = tuple(np.zeros_like(a) for a in c.rays[:2]) if c.camera_adjoint else None
         of_field = (self._settings, c.parameters, c.occupancy, c.march, c.rays)
