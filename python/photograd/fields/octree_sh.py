@@ -315,7 +315,9 @@ class OctreeSh(VoxelField):
         directions = np.ascontiguousarray(batch.directions, dtype)
         return (*self.tree.rays_in_cells(origins, directions), directions)
 
-    def _about(self, rays: tuple[Array, Array, Array], stop: float) -> tuple[Any, ...]:
+    def _about(
+        self, rays: tuple[Array, Array, Array], stop: float
+    ) -> tuple[float, Any, Any, float]:
         return self.density_scale, rays, self.tree.cell_size.tolist(), stop
 
     def state(self) -> dict[str, Array]:
