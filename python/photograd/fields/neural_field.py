@@ -112,6 +112,7 @@ class NeuralField(Fittable):
 
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
     first_model_help: ClassVar[str] = "networks start with random weights"
+    frozen = False
     policy: NeuralPolicy
     policy_class: ClassVar[type[NeuralPolicy]]
 
@@ -300,7 +301,7 @@ class NeuralField(Fittable):
         """
         del rates
         require_bounded("fit", self.params, self._parts)
-        if step % EVERY:
+        if step % EVERY or self.frozen:
             return
         if self.reached is None:
             self.reached = np.full((CELLS,) * 3, UNSEEN, np.float32)
@@ -313,6 +314,15 @@ class NeuralField(Fittable):
         flat = self.reached.reshape(-1)
         before = np.where(flat[index] < UNSEEN, flat[index] * np.float32(DECAY), 0)
         flat[index] = np.maximum(before, found)
+
+    @classmethod
+    def frozen_at(cls, options: FitOptions) -> int:
+        """Halfway: the occupancy is held from there on."""
+        return options.steps // 2
+
+    def freeze(self) -> None:
+        """Hold the occupancy."""
+        self.frozen = True
 
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
