@@ -28,8 +28,8 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_octree_sh(m);
     photograd::bind_voxel_hash(m);
     photograd::bind_sparse(m);
-    photograd::bind_samples(m);
     photograd::bind_bricks(m);
     photograd::bind_splat(m);
     photograd::bind_sparse_sh(m);
+    photograd::bind_samples(m);
 }

@@ -111,6 +111,7 @@ class NeuralField(Fittable):
     """
 
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    gradient_picture: ClassVar[str] = "networks"
     first_model_help: ClassVar[str] = "networks start with random weights"
     frozen = False
     policy: NeuralPolicy
