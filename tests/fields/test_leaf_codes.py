@@ -11,6 +11,7 @@ from photograd import sh
 from photograd._compiled import _core
 from photograd.errors import RangeError
 from photograd.fields import LeafCodes, SparseSh
+from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.decoded_march import harmonics, harmonics_backward
 from photograd.fields.march import checked_rays
 from photograd.representation import Outputs, RenderOptions, check_gradients
@@ -28,13 +29,16 @@ def test_the_samples_in_cells_with_an_active_voxel_are_found() -> None:
     settings = field.policy.settings(0.0)
     batch = field.example_batch(seed=3)
     rays = checked_rays(batch, settings, OPTIONS, np.dtype(np.float64), seed=0, step=0)
-    offset, t, points = _core.visible_samples(field.active.table, settings, rays)
+    mask = np.zeros(field.active.shape, bool)
+    mask[3:6, 2:7, 4:8] = True
+    active = ActiveVoxels(mask)
+    offset, t, points = _core.visible_samples(active.table, settings, rays)
     lower, upper = field.box
-    padded = np.pad(field.active.mask, 2)
+    padded = np.pad(mask, 2)
     expected: list[float] = []
     for o, d, t0, count in zip(*rays, strict=True):
         at = t0 + (np.arange(count) + 0.5) * field.dt
-        q = (o + at[:, None] * d - lower) / (upper - lower) * field.active.shape - 0.5
+        q = (o + at[:, None] * d - lower) / (upper - lower) * mask.shape - 0.5
         base = np.floor(q).astype(int) + 2
         corners = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
         near = [padded[tuple((base + corner).T)] for corner in corners]

@@ -31,6 +31,7 @@ from photograd.fields.march import (
     check_camera_adjoint,
     checked_rays,
     checked_values,
+    cotangent_arrays,
     require_finite_image,
 )
 from photograd.network import Perceptron
@@ -186,19 +187,16 @@ def march_codes_backward(context: CodesContext, d_outputs: Outputs) -> dict[str,
     """
     c, grid, kind = context, context.grid, context.t.dtype
     weight, behind, left = c.weights
-    d_color = np.asarray(d_outputs.color, kind)
-    d_left, d_weight = np.zeros_like(left), np.zeros_like(weight)
-    if d_outputs.opacity is not None:
-        d_left -= np.asarray(d_outputs.opacity, kind)
-    if d_outputs.depth is not None:
-        d_weight += np.asarray(d_outputs.depth, kind)[c.ray] * c.t
+    function = "LeafCodes.render_backward"
+    d_color, d_left, d_depth = cotangent_arrays(function, d_outputs, len(left), kind)
+    d_weight = d_depth[c.ray] * c.t
     per_sample = grid.policy.decode == "sample"
     if per_sample:
         d_rgb = weight[:, None] * d_color[c.ray]
         d_weight += (d_color[c.ray] * c.rgb).sum(axis=1)
     else:
         d_rgb = (1 - left)[:, None] * d_color
-        d_left -= (d_color * c.rgb).sum(axis=1)
+        d_left = d_left - (d_color * c.rgb).sum(axis=1)
     d_raw = _whole(d_rgb * c.rgb * (1 - c.rgb))
     d_decoder, d_inputs = grid.decoder.backward(grid.params["decoder"], c.inputs, d_raw)
     assert d_inputs is not None
@@ -208,7 +206,7 @@ def march_codes_backward(context: CodesContext, d_outputs: Outputs) -> dict[str,
         d_sum = d_features / _share(left)
         d_features = weight[:, None] * d_sum[c.ray]
         d_weight += (d_sum[c.ray] * c.features).sum(axis=1)
-        d_left += (d_sum * c.inputs[:, :numbers]).sum(axis=1)  # the share is 1 - left
+        d_left = d_left + (d_sum * c.inputs[:, :numbers]).sum(axis=1)  # the share is 1 - left
     d_sigma_t = _core.sample_weights_backward(
         c.offset, (weight, behind), grid.policy.dt, (d_weight, d_left)
     )

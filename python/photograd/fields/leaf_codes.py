@@ -96,7 +96,7 @@ class LeafCodes(VoxelField):
 
     @classmethod
     def from_sparse_sh(
-        cls, field: SparseSh, *, seed: int = 0, decode: Decode = "sample", **sizes: int
+        cls, field: SparseSh, *, seed: int = 0, decode: Decode = "sample", **sizes: Any
     ) -> Self:
         """Voxels and densities of a sparse grid; codes and decoder are random.
 
@@ -131,7 +131,8 @@ class LeafCodes(VoxelField):
     def _blank(cls, active: ActiveVoxels, policy: CodesPolicy, kind: Any) -> Self:
         rows, inputs = len(active), policy.features + sh.count(DIRECTION_DEGREE)
         network = Perceptron(inputs, [policy.width] * policy.depth + [3], hidden=policy.hidden)
-        shapes = {"density": rows, "codes": (rows, policy.features), "decoder": network.count}
+        shapes: dict[str, Any] = {"density": rows, "codes": (rows, policy.features)}
+        shapes["decoder"] = network.count
         return cls(active, {n: np.zeros(shape, kind) for n, shape in shapes.items()}, policy)
 
     @classmethod
@@ -198,7 +199,7 @@ class LeafCodes(VoxelField):
     @property
     def resolution(self) -> int:
         """Voxels along the longest edge."""
-        return max(self.active.shape)
+        return max(self.voxel_shape)
 
     @property
     def dt(self) -> float:
@@ -246,7 +247,7 @@ class LeafCodes(VoxelField):
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Self:
         """Two thirds of 11 x 9 x 10 voxels, codes of 3 numbers; smooth, so that nothing kinks."""
         grid = SparseSh.example(seed=seed, dtype=dtype)
-        small = {"features": 3, "width": 8, "depth": 1}
+        small: dict[str, Any] = {"features": 3, "width": 8, "depth": 1}
         field = cls.from_sparse_sh(grid, seed=seed, **small)
         field.params["codes"] *= 10
         return field._smooth()

@@ -262,10 +262,8 @@ class NeuralField(Fittable):
 
     def state(self) -> dict[str, Array]:
         """The running maximum of each cell."""
-        reached = (
-            np.full((CELLS,) * 3, UNSEEN, np.float32) if self.reached is None else self.reached
-        )
-        return {"reached": reached}
+        unseen = np.full((CELLS,) * 3, UNSEEN, np.float32)
+        return {"reached": unseen if self.reached is None else self.reached}
 
     def load_state(self, state: Mapping[str, Array]) -> None:
         """Take what `state` returned."""

@@ -25,6 +25,7 @@ from photograd._compiled import _core
 from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.march import cotangent_arrays
 from photograd.fields.octree_leaves import Leaves, TreePolicy, leaves_of_grid, leaves_of_voxels
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.voxel_field import VoxelField, harmonic_rows
@@ -282,11 +283,7 @@ class OctreeSh(VoxelField):
         c = context
         _, density, coefficients = c.parameters
         rays, dtype = len(c.rays[0]), density.dtype
-        d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
-        d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
-        cotangents = [
-            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
-        ]
+        cotangents = cotangent_arrays("OctreeSh.render_backward", d_outputs, rays, dtype)
         gradients = {"density": np.zeros_like(density), "sh": np.zeros_like(coefficients)}
         d_rays = tuple(np.zeros((rays, 3), dtype) for _ in range(2)) if c.camera_adjoint else None
         of_field = self.tree.core, c.parameters, *self._about(c.rays, c.stop)
@@ -318,7 +315,9 @@ class OctreeSh(VoxelField):
         directions = np.ascontiguousarray(batch.directions, dtype)
         return (*self.tree.rays_in_cells(origins, directions), directions)
 
-    def _about(self, rays: tuple[Array, Array, Array], stop: float) -> tuple[Any, ...]:
+    def _about(
+        self, rays: tuple[Array, Array, Array], stop: float
+    ) -> tuple[float, Any, Any, float]:
         return self.density_scale, rays, self.tree.cell_size.tolist(), stop
 
     def state(self) -> dict[str, Array]:

@@ -67,7 +67,8 @@ class PlenOctree(OctreeSh):
         call = Arguments("PlenOctree.from_field")
         call.integer("degree", degree, low=0, high=MAX_DEGREE)
         corners = field.box.astype(np.float64)
-        shape = cubic_voxels(corners[1] - corners[0], resolution)
+        x, y, z = cubic_voxels(corners[1] - corners[0], resolution)
+        shape = x, y, z
         edge = float((corners[1] - corners[0]).max()) / resolution
         box = np.stack([corners[0], corners[0] + edge * np.array(shape)])
         kind = field.params["density"].dtype
