@@ -20,7 +20,6 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);
-    photograd::bind_samples(m);
     photograd::bind_network(m);
     photograd::bind_neural(m);
     photograd::bind_sh(m);
@@ -32,4 +31,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_bricks(m);
     photograd::bind_splat(m);
     photograd::bind_sparse_sh(m);
+    photograd::bind_samples(m);
 }

@@ -85,7 +85,13 @@ ResolutionOption: TypeAlias = Annotated[
     ),
 ]
 RaysOption: TypeAlias = Annotated[
-    int, typer.Option("--rays", min=1, help="Rays a step; Gaussians take whole views.")
+    int | None,
+    typer.Option(
+        "--rays",
+        min=1,
+        help="Rays a step; Gaussians take whole views.",
+        show_default=_defaults("rays"),
+    ),
 ]
 LearningRateOption: TypeAlias = Annotated[
     float, typer.Option("--learning-rate", help="Factor on the built-in rates.")
@@ -176,7 +182,7 @@ def fit(
     representation: RepresentationOption = DEFAULTS.representation,
     steps: StepsOption = None,
     resolution: ResolutionOption = None,
-    rays: RaysOption = DEFAULTS.rays,
+    rays: RaysOption = None,
     learning_rate: LearningRateOption = DEFAULTS.learning_rate,
     total_variation: TotalVariationOption = DEFAULTS.total_variation,
     degree: DegreeOption = None,

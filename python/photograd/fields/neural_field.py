@@ -48,7 +48,7 @@ EVERY = 16
 """Steps between two updates of the occupancy grid."""
 PARTS = 4
 """Updates after which all cells have been looked at."""
-DECAY = 0.95
+DECAY = 0.8
 """Of a cell's maximum, from look to look."""
 STEPS_ACROSS = 128
 """Steps of a march across the box, times the option `steps_per_voxel`."""
@@ -64,8 +64,7 @@ class NeuralPolicy(MarchPolicy):
 
     Attributes:
         width: of the hidden layers.
-        depth: hidden layers of the density network; the color network has one, or two behind a
-            shallow one.
+        depth: hidden layers of the density network; the color network has one.
         features: numbers that the color network takes from the density network.
         hidden: activation of the hidden layers.
     """
@@ -112,6 +111,7 @@ class NeuralField(Fittable):
     """
 
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    gradient_picture: ClassVar[str] = "networks"
     first_model_help: ClassVar[str] = "networks start with random weights"
     frozen = False
     policy: NeuralPolicy
@@ -146,9 +146,7 @@ class NeuralField(Fittable):
             skip=policy.depth // 2 if policy.depth >= 4 else 0,
         )
         self.color = Perceptron(
-            policy.features + DIRECTION_NUMBERS,
-            [policy.width] * (2 if policy.depth == 1 else 1) + [3],
-            hidden=policy.hidden,
+            policy.features + DIRECTION_NUMBERS, [policy.width, 3], hidden=policy.hidden
         )
         self.reached: Array | None = None
         e = self.encoding

@@ -28,6 +28,7 @@ class AutoMutant:
             be made a second time in such a line of the function.
         number: of the line, for messages only; what identifies the mutant is the rest.
         text: the whole module with the change.
+        task: of the solution that it is in.
     """
 
     function: str
@@ -35,6 +36,7 @@ class AutoMutant:
     mutation: str
     number: int
     text: str
+    task: str
 
 
 def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
@@ -44,7 +46,7 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
         RegionError: a marker is wrong.
     """
     regions = [r for r in find_regions(source, file) if r.kind == "solution"]
-    owners = [part.function for part in solution_parts(source, file)]
+    parts = solution_parts(source, file)
     text = _Text(source)
     found: list[AutoMutant] = []
     times: Counter[tuple[str, str, str]] = Counter()
@@ -52,7 +54,7 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
     own = {node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
     for node in _changeable(ast.parse(source)):
         line = getattr(node, "lineno", 0)
-        where = [o for r, o in zip(regions, owners, strict=True) if r.first < line < r.last]
+        where = [p for r, p in zip(regions, parts, strict=True) if r.first < line < r.last]
         if not where:
             continue
         changes = statements_of(node) if isinstance(node, ast.stmt) else expressions_of(node, own)
@@ -66,10 +68,10 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
             if dump in seen:
                 continue
             seen.add(dump)
-            place = (where[0], text.line(line), f"{old} -> {new}")
+            place = (where[0].function, text.line(line), f"{old} -> {new}")
             times[place] += 1
             again = f" [{times[place]}]" if times[place] > 1 else ""
-            found.append(AutoMutant(*place[:2], place[2] + again, line, mutated))
+            found.append(AutoMutant(*place[:2], place[2] + again, line, mutated, where[0].task))
     return found
 
 
