@@ -1,5 +1,4 @@
 // Multilayer perceptrons and input encodings; photograd.network is the typed face.
-#include <pybind11/stl.h>
 
 #include "module.h"
 #include "network_args.h"
