@@ -159,7 +159,12 @@ def rounds_can_be_chained(t):
     t.require(len(none[2]) == 0, "without steps there are no losses")
 
 
-@check("10.6.start", points=1, hint="an array of the start has changed: copy it first")
+@check(
+    "10.6.start",
+    points=1,
+    hint="an array of the start has changed: copy it first",
+    sole="what students can run; a hidden check finds its mistake as well",
+)
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
     given = (*small_case(t), 2, 2, 0.01, 1)
