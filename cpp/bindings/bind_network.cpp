@@ -43,7 +43,8 @@ void check_values(const ArrayArgs& args, bool fused, const PerceptronValues* val
 
 void layers_forward(const PerceptronShape& shape, const py::array& parameters,
                     const py::array& inputs, py::array outputs, bool fused,
-                    PerceptronValues* values) {
+                    std::optional<PerceptronValues*> kept) {
+    PerceptronValues* values = kept.value_or(nullptr);
     dispatch_real("perceptron_forward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         check_values<R>(args, fused, values);
@@ -57,7 +58,9 @@ void layers_forward(const PerceptronShape& shape, const py::array& parameters,
 
 void layers_backward(const PerceptronShape& shape, const py::array& parameters,
                      const py::array& inputs, const py::array& d_outputs, py::array d_parameters,
-                     std::optional<py::array> d_inputs, bool fused, PerceptronValues* values) {
+                     std::optional<py::array> d_inputs, bool fused,
+                     std::optional<PerceptronValues*> kept) {
+    PerceptronValues* values = kept.value_or(nullptr);
     dispatch_real("perceptron_backward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         check_values<R>(args, fused, values);
@@ -232,11 +235,12 @@ void bind_network(py::module_& m) {
     py::class_<PerceptronValues>(m, "PerceptronValues").def(py::init<>());
     m.def(
         "perceptron_forward", &layers_forward, py::arg("shape"), py::arg("parameters"),
-        py::arg("inputs"), py::arg("outputs"), py::arg("fused") = true, py::arg("values") = nullptr,
+        py::arg("inputs"), py::arg("outputs"), py::arg("fused") = true,
+        py::arg("values") = py::none(),
         "Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.");
     m.def("perceptron_backward", &layers_backward, py::arg("shape"), py::arg("parameters"),
           py::arg("inputs"), py::arg("d_outputs"), py::arg("d_parameters"), py::arg("d_inputs"),
-          py::arg("fused") = true, py::arg("values") = nullptr,
+          py::arg("fused") = true, py::arg("values") = py::none(),
           "Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.");
     bind_encodings(m);
 }

@@ -1571,7 +1571,7 @@ def perceptron_backward(
     d_parameters: numpy.ndarray,
     d_inputs: numpy.ndarray | None,
     fused: bool = True,
-    values: PerceptronValues = None,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
     Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.
@@ -1583,7 +1583,7 @@ def perceptron_forward(
     inputs: numpy.ndarray,
     outputs: numpy.ndarray,
     fused: bool = True,
-    values: PerceptronValues = None,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
     Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
