@@ -1,7 +1,7 @@
 """A field of networks, read into the leaves of an octree: the conversion of PlenOctrees [Yu2021].
 
 1. In each cell of a grid over the field's box, extinction is read at a few points; what is too
-   transparent to be seen stays empty.
+   transparent to be visible stays empty.
 2. Of the others, those stay that have a weight in some pixel of some photograph.
 3. In these, color is read at the points in many directions, and projected onto spherical harmonics
    of raw color (before the sigmoid); the points count as much as their opacity.
@@ -41,7 +41,7 @@ DARKEST, BRIGHTEST = 1e-3, 1 - 1e-3
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of a box that are seen: which ones (N, 3), and extinction (N, S) at points of each."""
+    """Cells of a box that are visible: which (N, 3), and extinction (N, S) at points of each."""
 
     box: Array
     shape: tuple[int, int, int]
@@ -115,9 +115,9 @@ def visible_cells(
         sigma_t = np.stack(
             [radiance(points_in(box, shape, index, s), along)[0] for s in range(POINTS)], axis=1
         )
-        seen = -expm1(-edge * sigma_t.mean(axis=1, dtype=np.float64)) > opacity
-        found.append(index[seen])
-        values.append(sigma_t[seen])
+        visible = -expm1(-edge * sigma_t.mean(axis=1, dtype=np.float64)) > opacity
+        found.append(index[visible])
+        values.append(sigma_t[visible])
     return Cells(box, shape, np.concatenate(found), np.concatenate(values))
 
 
