@@ -260,7 +260,7 @@ def fig6_size(module: ModuleType) -> tuple[Figure, Facts]:
         "at equal time better by more than 4 dB": Fact(
             min(gains), 4.0, 30.0, red="train_table_fixed"
         ),
-        "at equal size and four times the time worse, by less than 3 dB": Fact(
+        "at equal size the network is better after four times the time, by less than 3 dB": Fact(
             max(ahead), 0.0, 3.0, red="encode_levels_share_rows"
         ),
     }
