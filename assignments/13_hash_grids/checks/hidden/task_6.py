@@ -45,21 +45,21 @@ def decibels(got, right):
     sole="the experiment: which of the two is better, and what sharing costs",
 )
 def the_hash_grid_wins_and_loses_gracefully(t):
-    """At equal time 2.5 dB above a network; shrunk to its size, at most 6.5 dB less."""
-    ref, steps = t.reference, 100
-    points = ref.pixels(64)
+    """At equal time 1 dB above a network or more; shrunk to its size, at most 5 dB less."""
+    ref, steps = t.reference, 80
+    points = ref.pixels(48)
     c = complex(-0.8, 0.156) + 0.05 * complex(*t.rng.uniform(-1.0, 1.0, 2))
     target = ref.julia(points, c)
 
     # A step of the network takes a fourth of the time, though it uses 20 times as many numbers.
     weights, octaves = ref.start_weights((22, 64, 64, 3), t.rng), 5
-    batches = t.rng.integers(0, len(points), (4 * steps, 1024))
+    batches = t.rng.integers(0, len(points), (4 * steps, 500))
     weights, _ = ref.train_network(points, target, batches, octaves, weights, 0.006)
     plain = decibels(ref.network(weights, ref.frequencies(points, octaves)), target)
 
     scores = []
     for most in (2**12, 2**10):
-        levels = layout([8, 16, 32, 64], 2, most)
+        levels = layout([6, 12, 24, 48], 2, most)
         table = t.rng.uniform(-1e-4, 1e-4, (int(levels[-1, 1] + levels[-1, 2]), 2))
         decoder = ref.start_weights((8, 16, 3), t.rng)
         given = points, target, batches[:steps], levels, table, decoder, 0.03
@@ -68,7 +68,7 @@ def the_hash_grid_wins_and_loses_gracefully(t):
     size = table.size + ref.numbers_per_point(decoder)
     t.require(size <= ref.numbers_per_point(weights), "the smaller table is not small enough")
     large, small = scores
-    # Fourteen seeds: at least 4.1 dB more, 6.3 on average; shrunk by 4.7 dB at most.
+    # Ten seeds: at least 2.3 dB more, 4.2 on average; shrunk by 3.4 dB at most.
     said = f"hash grid {large:.1f} dB, network {plain:.1f} dB at equal time, shrunk {small:.1f} dB"
-    t.require(large >= plain + 2.5, f"{said}: threshold 2.5 dB more than the network")
-    t.require(small >= large - 6.5, f"{said}: threshold 6.5 dB less when shrunk")
+    t.require(large >= plain + 1.0, f"{said}: threshold 1 dB more than the network")
+    t.require(small >= large - 5.0, f"{said}: threshold 5 dB less when shrunk")
