@@ -16,7 +16,7 @@ import functools
 import io
 import re
 import tempfile
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -104,21 +104,14 @@ def _run(
 ) -> tuple[list[Outcome], list[Outcome]]:
     """Outcomes of checks by themselves, and in the end."""
     bundle = bundle_of(folder, secret)
-    checks = [
-        each
-        for each in bundle.checks
-        if (not tasks or each.task in tasks) and (secret == SECRET or each.visibility != "public")
-    ]
+    seeded = [each for each in bundle.checks if secret == SECRET or each.visibility != "public"]
+    checks = [each for each in seeded if not tasks or each.task in tasks]
     sources = bundle.hand(bundle.solution_files(text)).sources
     alone: list[Outcome] = []
     end = run_checks(
-        checks, bundle.setting, lambda given: _open(sources, given), on_outcome=alone.append
+        checks, bundle.setting, lambda given: LocalStudent(sources, given), on_outcome=alone.append
     )
     return alone, end
-
-
-def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
-    return LocalStudent(sources, given)
 
 
 def lost(outcomes: list[Outcome]) -> set[str]:

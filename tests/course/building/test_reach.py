@@ -49,3 +49,9 @@ def test_a_check_is_left_out_only_where_it_passes_for_every_mutant() -> None:
         assert not set(left_out[mutant.name]) & set(mutant.loses)
         whole = build.judge.judge_all([Job(mutant.apply(build.source))])[0]
         assert set(whole.lost) == set(mutant.loses)
+
+
+def test_of_automatic_mutants_the_function_is_known() -> None:
+    build = build_of(TOY)
+    for mutant in build.automatic:
+        assert build.unreached_by(mutant) == build.unreached(mutant.text)

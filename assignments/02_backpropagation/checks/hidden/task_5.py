@@ -25,7 +25,7 @@ def values_and_gradients(n):
 
 
 def derived(_, programs, inputs):
-    """What is right: the values, and derivatives by complex steps."""
+    """What is right: the values, and complex-step derivatives."""
     pairs = list(zip(programs, inputs, strict=True))
     values = np.array([evaluate(program, x)[-1] for program, x in pairs])
     return {"values": values, "gradients": [complex_step(program, x) for program, x in pairs]}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,7 +17,7 @@ from .equivalents import Equivalent, read_equivalents
 from .judging import RULES_SECRET, Job, Judge, Verdict
 from .named import NamedMutant, read_alternatives, read_mutants
 from .public import wheel_kits
-from .reach import changed_functions
+from .reach import changed_functions, function_names
 from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
@@ -143,8 +143,20 @@ class AssignmentBuild:
         What such a check runs is the solution, so that it passes.
         """
         changed = changed_functions(self.source, text)
-        if changed is None:
-            return ()
+        return () if changed is None else self._not_entering(changed)
+
+    def unreached_by(self, mutant: AutoMutant) -> tuple[str, ...]:
+        """The same for an automatic mutant, whose function is known."""
+        names = mutant.function.split(".")
+        around = {".".join(names[:count]) for count in range(1, len(names) + 1)}
+        changed = self._functions & around  # of a function in a function, the outer one
+        return self._not_entering(changed) if changed else ()
+
+    @cached_property
+    def _functions(self) -> frozenset[str]:
+        return function_names(self.source)
+
+    def _not_entering(self, changed: Set[str]) -> tuple[str, ...]:
         return tuple(check for check, entered in self.entered.items() if not entered & changed)
 
     @cached_property
@@ -174,7 +186,7 @@ class AssignmentBuild:
     def automatic_verdicts(self) -> list[Verdict]:
         """What becomes of each automatic mutant, up to the first check that notices it."""
         jobs = [
-            Job(each.text, first=True, task=each.task, passed=self.unreached(each.text))
+            Job(each.text, first=True, task=each.task, passed=self.unreached_by(each))
             for each in self.automatic
         ]
         return self.judge_jobs("automatic mutants", jobs)

@@ -50,9 +50,10 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
     text = _Text(source)
     found: list[AutoMutant] = []
     times: Counter[tuple[str, str, str]] = Counter()
-    seen = {ast.dump(ast.parse(source))}
-    own = {node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
-    for node in _changeable(ast.parse(source)):
+    tree = ast.parse(source)
+    parsed = _Parsed(source, tree)
+    own = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    for node in _changeable(tree):
         line = getattr(node, "lineno", 0)
         where = [p for r, p in zip(regions, parts, strict=True) if r.first < line < r.last]
         if not where:
@@ -61,13 +62,8 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
         for old, new in changes:
             written = f"({new})" if isinstance(node, ast.expr) else new
             mutated = text.replace(node, written)
-            try:
-                dump = ast.dump(ast.parse(mutated))
-            except SyntaxError:
+            if not parsed.is_new(mutated, line):
                 continue
-            if dump in seen:
-                continue
-            seen.add(dump)
             place = (where[0].function, text.line(line), f"{old} -> {new}")
             times[place] += 1
             again = f" [{times[place]}]" if times[place] > 1 else ""
@@ -94,6 +90,38 @@ def _is_docstring(node: ast.AST) -> bool:
         and isinstance(node.value, ast.Constant)
         and isinstance(node.value.value, str)
     )
+
+
+class _Parsed:
+    """The trees of the texts so far, told apart by the statement of the module that differs."""
+
+    def __init__(self, source: str, tree: ast.Module) -> None:
+        self._lines = len(source.splitlines())
+        self._spans = [
+            (
+                min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", ()))]),
+                end,
+            )
+            for node in tree.body
+            if (end := node.end_lineno) is not None
+        ]
+        self._seen = {
+            (span, ast.dump(node)) for span, node in zip(self._spans, tree.body, strict=True)
+        }
+
+    def is_new(self, text: str, line: int) -> bool:
+        """Whether a text that differs at this line is Python, and differs from all before."""
+        first, last = next(span for span in self._spans if span[0] <= line <= span[1])
+        lines = text.splitlines(keepends=True)
+        part = "".join(lines[first - 1 : len(lines) - (self._lines - last)])
+        try:
+            (statement,) = ast.parse(part).body
+        except (SyntaxError, ValueError):
+            return False
+        key = ((first, last), ast.dump(statement))
+        is_new = key not in self._seen
+        self._seen.add(key)
+        return is_new
 
 
 class _Text:

@@ -25,6 +25,11 @@ def changed_functions(old: str, new: str) -> frozenset[str] | None:
     return frozenset(name for name in bodies[0] if bodies[0][name] != bodies[1][name])
 
 
+def function_names(text: str) -> frozenset[str]:
+    """The functions of a module and the methods of its classes, such as "Value.exp"."""
+    return frozenset(name for name, _ in _functions(ast.parse(text), ""))
+
+
 def _bodies_taken_out(tree: ast.Module) -> dict[str, list[str]]:
     """The bodies by name; the tree keeps the rest."""
     found: dict[str, list[str]] = {}

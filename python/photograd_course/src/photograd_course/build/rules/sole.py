@@ -31,7 +31,7 @@ def _alone(build: AssignmentBuild, check: Check) -> bool:
             mutant.text,
             first=True,
             task=mutant.task,
-            passed=(*verdict.passed, *build.unreached(mutant.text)),
+            passed=(*verdict.passed, *build.unreached_by(mutant)),
             failed=verdict.lost,
         )
         for mutant, verdict in pairs
