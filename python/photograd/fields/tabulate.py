@@ -53,12 +53,12 @@ class Cells:
         """Of a cell, in meters."""
         return float((self.box[1, 0] - self.box[0, 0]) / self.shape[0])
 
-    def points(self, sample: int) -> Array:
-        """(N, 3) the points of this number, in meters."""
-        return points_in(self.box, self.shape, self.index, sample)
-
     def kept(self, those: NDArray[np.bool_]) -> Cells:
-        """Some of them."""
+        """Some of them.
+
+        Args:
+            those: (N,).
+        """
         return Cells(self.box, self.shape, self.index[those], self.sigma_t[those])
 
 
@@ -87,7 +87,14 @@ def radiance_of(field: NeuralField, dt: float) -> Radiance:
 def points_in(
     box: Array, shape: tuple[int, int, int], index: NDArray[np.int64], sample: int
 ) -> Array:
-    """(N, 3) a random point in each of the cells `index` (N, 3), in meters, float64."""
+    """(N, 3) a random point in each of some cells, in meters, float64.
+
+    Args:
+        box: (2, 3) in meters.
+        shape: cells along each edge of the box.
+        index: (N, 3) which cells.
+        sample: number of the point in its cell.
+    """
     number = np.ravel_multi_index(tuple(index.T), shape)
     u = [uniform(0, step=0, pixel=number, sample=sample, dimension=k) for k in range(3)]
     points: Array = box[0] + (index + np.stack(u, axis=1)) * ((box[1] - box[0]) / shape)
