@@ -27,14 +27,20 @@ struct HashSides {
     float weight[2][hash_block], slope[hash_block];  // d weight[1] / d p
 };
 
+// Coordinates of a block's points along one axis, with zeros behind the last.
 template <int D>
-static inline void locate_axis(const HashLevelArgs& level, const float* points, int n, int axis,
-                               HashSides& out) {
-    float p[hash_block];
+static inline void axis_of_points(const float* points, int n, int axis, float* p) {
     if (n == hash_block)
         for (int i = 0; i < hash_block; ++i) p[i] = points[D * i + axis];
     else
         for (int i = 0; i < hash_block; ++i) p[i] = i < n ? points[D * i + axis] : 0.0f;
+}
+
+template <int D>
+static inline void locate_axis(const HashLevelArgs& level, const float* points, int n, int axis,
+                               HashSides& out) {
+    float p[hash_block];
+    axis_of_points<D>(points, n, axis, p);
     const std::uint32_t factor = hash_factor(axis, level.resolution, level.mask == 0);
     const int resolution = level.resolution;
     const auto fill = [&](bool smoothstep) {
@@ -68,21 +74,65 @@ static inline void combine_rows(const HashLevelArgs& level, const HashSides* sid
         }
 }
 
-template <int D>
-static inline float corner_weight(const HashSides* sides, int corner, int i) {
-    float w = sides[0].weight[corner & 1][i];
-    for (int a = 1; a < D; ++a) w = w * sides[a].weight[corner >> a & 1][i];
-    return w;
+// Rows and weights of all corners, in one loop that leaves nothing between in memory.
+template <int D, bool Dense>
+static inline void fill_block(const HashLevelArgs& level, bool smoothstep,
+                              const float (*p)[hash_block], HashBlock<D>& out) {
+    std::uint32_t factor[D];
+    for (int a = 0; a < D; ++a) factor[a] = hash_factor(a, level.resolution, Dense);
+    const int resolution = level.resolution;
+    const std::uint32_t mask = Dense ? ~0u : level.mask;
+    const auto join = [](std::uint32_t a, std::uint32_t b) { return Dense ? a + b : a ^ b; };
+    for (int i = 0; i < hash_block; ++i) {
+        const HashAxis<float> x = hash_axis(p[0][i], resolution, smoothstep);
+        const HashAxis<float> y = hash_axis(p[1][i], resolution, smoothstep);
+        const std::uint32_t x0 = static_cast<std::uint32_t>(x.cell) * factor[0],
+                            x1 = x0 + factor[0];
+        const std::uint32_t y0 = static_cast<std::uint32_t>(y.cell) * factor[1],
+                            y1 = y0 + factor[1];
+        const std::uint32_t r0 = join(x0, y0), r1 = join(x1, y0), r2 = join(x0, y1),
+                            r3 = join(x1, y1);
+        const float u = 1.0f - x.weight, v = 1.0f - y.weight;
+        const float w0 = u * v, w1 = x.weight * v, w2 = u * y.weight, w3 = x.weight * y.weight;
+        const auto put = [&](int k, std::uint32_t row, float weight) {
+            out.row[k][i] = row & mask;
+            out.weight[k][i] = weight;
+        };
+        if constexpr (D == 2) {
+            put(0, r0, w0);
+            put(1, r1, w1);
+            put(2, r2, w2);
+            put(3, r3, w3);
+        } else {
+            const HashAxis<float> z = hash_axis(p[2][i], resolution, smoothstep);
+            const std::uint32_t z0 = static_cast<std::uint32_t>(z.cell) * factor[2],
+                                z1 = z0 + factor[2];
+            const float low = 1.0f - z.weight, high = z.weight;
+            put(0, join(r0, z0), w0 * low);
+            put(1, join(r1, z0), w1 * low);
+            put(2, join(r2, z0), w2 * low);
+            put(3, join(r3, z0), w3 * low);
+            put(4, join(r0, z1), w0 * high);
+            put(5, join(r1, z1), w1 * high);
+            put(6, join(r2, z1), w2 * high);
+            put(7, join(r3, z1), w3 * high);
+        }
+    }
 }
 
 template <int D>
 static void locate_block(const HashLevelArgs& level, const float* points, int n,
                          HashBlock<D>& out) {
-    HashSides sides[D];
-    for (int a = 0; a < D; ++a) locate_axis<D>(level, points, n, a, sides[a]);
-    combine_rows<D>(level, sides, out.row);
-    for (int k = 0; k < 1 << D; ++k)
-        for (int i = 0; i < hash_block; ++i) out.weight[k][i] = corner_weight<D>(sides, k, i);
+    float p[D][hash_block];
+    for (int a = 0; a < D; ++a) axis_of_points<D>(points, n, a, p[a]);
+    if (level.smoothstep && level.mask == 0)
+        fill_block<D, true>(level, true, p, out);
+    else if (level.smoothstep)
+        fill_block<D, false>(level, true, p, out);
+    else if (level.mask == 0)
+        fill_block<D, true>(level, false, p, out);
+    else
+        fill_block<D, false>(level, false, p, out);
 }
 
 // Corners that differ along the first axis alone are mostly on one cache line: of a dense level

@@ -33,6 +33,7 @@ extern const Kernels table{
     .hash_encode = &hash_encode,
     .hash_scatter = &hash_scatter,
     .hash_points = &hash_points,
+    .perceptron_pack = &perceptron_pack,
     .perceptron_forward = &perceptron_forward,
     .perceptron_backward = &perceptron_backward,
     .principled_values = &principled_values,

@@ -39,6 +39,7 @@ struct Kernels {
     void (*hash_encode)(const HashEncode&, std::int64_t begin, std::int64_t end);
     void (*hash_scatter)(const HashScatter&, std::int64_t begin, std::int64_t end);
     void (*hash_points)(const HashPoints&, std::int64_t begin, std::int64_t end);
+    void (*perceptron_pack)(const PerceptronLayer&, float* packed, float* transposed);
     void (*perceptron_forward)(const PerceptronBlock&);
     void (*perceptron_backward)(const PerceptronBlock&, const PerceptronBackward&);
     /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is

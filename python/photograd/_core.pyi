@@ -24,6 +24,7 @@ __all__: list[str] = [
     "Op",
     "PathGeometry",
     "PerceptronShape",
+    "PerceptronValues",
     "PhaseFunction",
     "PhotonMap",
     "PreparedRays32",
@@ -801,6 +802,9 @@ class PerceptronShape:
     ) -> None: ...
     @property
     def parameters(self) -> int: ...
+
+class PerceptronValues:
+    def __init__(self) -> None: ...
 
 class HashSettings:
     def __init__(
@@ -1628,9 +1632,10 @@ def perceptron_backward(
     d_parameters: numpy.ndarray,
     d_inputs: numpy.ndarray | None,
     fused: bool = True,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
-    Adds to d_parameters; writes d_inputs unless None.
+    Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.
     """
 
 def perceptron_forward(
@@ -1639,9 +1644,10 @@ def perceptron_forward(
     inputs: numpy.ndarray,
     outputs: numpy.ndarray,
     fused: bool = True,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
-    Writes outputs of inputs (N, shape's). fused: by the kernel, for float32.
+    Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:

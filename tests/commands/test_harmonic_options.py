@@ -46,7 +46,7 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
         (
             "dense_grid",
             ("--degree", 1),
-            "--degree: expected a fit of dense_sh or gaussians or octree_sh or sparse",
+            "--degree: expected a fit of dense_sh or gaussians or octree_sh or plenoctree",
         ),
         ("dense_sh", ("--prune", 0.1), "fit of plenoctree or sparse_sh, got 'dense_sh'"),
     ],

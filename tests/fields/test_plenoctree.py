@@ -85,8 +85,8 @@ def test_a_smooth_field_and_its_leaves_look_alike() -> None:
     errors = []
     for resolution in (5, 14):
         tree = PlenOctree.from_field(field, resolution, degree=2, opacity=0.0)
-        seen, _ = tree.render(batch, seed=0, step=0, options=OPTIONS)
-        errors.append(float(np.abs(seen.color - truth.color).max()))
+        looks, _ = tree.render(batch, seed=0, step=0, options=OPTIONS)
+        errors.append(float(np.abs(looks.color - truth.color).max()))
     assert truth.color.max() > 0.1
     assert errors[1] < 0.08
     assert errors[1] < 0.8 * errors[0]

@@ -47,7 +47,7 @@ def corners(encoding: HashEncoding, level: Any, points: Any) -> Any:
     cell = np.minimum(at.astype(np.int64), level.resolution - 1)
     f = at - cell.astype(F4)
     rate = np.where(inside == points, n, F4(0))
-    if encoding.smoothstep:
+    if encoding is SHAPES["smoothstep"]:
         f, rate = f * f * (F4(3) - F4(2) * f), rate * (F4(6) * f * (F4(1) - f))
     axes = range(encoding.dimensions)
     for k in range(2**encoding.dimensions):

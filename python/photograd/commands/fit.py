@@ -251,7 +251,15 @@ def fit(
 def run_and_score(
     job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float, *, freeze: bool
 ) -> tuple[FitResult, dict[str, Any]]:
-    """Run a fit; with `freeze` also {"frozen": ..., "refined": ...}, once it has ended."""
+    """Run a fit; with `freeze` also {"frozen": ..., "refined": ...}, once it has ended.
+
+    Args:
+        job: the fit.
+        out: its folder.
+        stopping: asked after each step.
+        checkpoint_seconds: between two checkpoints.
+        freeze: whether its structure is held once it is known, and both moments are scored.
+    """
     if not freeze:
         return run_with_bar(job, out, stopping, checkpoint_seconds), {}
     results = []

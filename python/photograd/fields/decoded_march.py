@@ -78,14 +78,26 @@ class CodeGrid:
     background_density: float
 
     def at(self, points: Array, group: str) -> Array:
-        """(M, C) values of a group at points (M, 3) in voxels."""
+        """(M, C) values of a group.
+
+        Args:
+            points: (M, 3) in voxels.
+            group: "density" or "codes".
+        """
         values, empty = self._rows(group)
         found = np.empty((len(points), values.shape[1]), values.dtype)
         _core.sample_bricks(self.active.topology, values, empty, points, found)
         return found
 
     def at_backward(self, points: Array, group: str, d: Array, d_points: Array) -> Array:
-        """The gradient of a group, in its shape, for d (M, C); adds to d_points (M, 3)."""
+        """The gradient of a group, in its shape.
+
+        Args:
+            points: (M, 3) in voxels.
+            group: "density" or "codes".
+            d: (M, C) for the values there.
+            d_points: (M, 3), is added to.
+        """
         values, empty = self._rows(group)
         d_values, unused = np.zeros_like(values), np.zeros_like(empty)
         arrays = values, empty, points, _whole(d), d_values, unused, d_points
@@ -98,13 +110,22 @@ class CodeGrid:
         return values, np.full(values.shape[1], outside, values.dtype)
 
     def weights(self, offset: Any, raw: Array) -> tuple[Array, Array, Array]:
-        """Weight (M,), transmittance behind each sample (M,), and of each ray (R,)."""
+        """Weight (M,), transmittance behind each sample (M,), and of each ray (R,).
+
+        Args:
+            offset: (R + 1,) where the samples of each ray begin.
+            raw: (M,) density.
+        """
         sigma_t = (self.policy.density_scale * softplus(raw)).astype(raw.dtype)
         weight, behind, left = _core.sample_weights(offset, sigma_t, self.policy.dt)
         return weight, behind, left
 
     def decode(self, inputs: Array) -> Array:
-        """Colors (M, 3) of codes and harmonics (M, F + K)."""
+        """Colors (M, 3) of codes.
+
+        Args:
+            inputs: (M, F + K), codes and harmonics.
+        """
         raw = self.decoder.forward(self.params["decoder"], _whole(inputs))
         rgb: Array = sigmoid(raw).astype(raw.dtype)
         return rgb
@@ -234,7 +255,11 @@ def _share(left: Array) -> Array:
 
 
 def harmonics(directions: Array) -> Array:
-    """Y (R, K) of `DIRECTION_DEGREE` at directions (R, 3), of the same dtype."""
+    """Y (R, K) of `DIRECTION_DEGREE`, of the dtype of the directions.
+
+    Args:
+        directions: (R, 3) of unit length.
+    """
     count = sh.count(DIRECTION_DEGREE)
     none = np.zeros((len(directions), count, 1), directions.dtype)
     one = np.ones((len(directions), 1), directions.dtype)
@@ -242,7 +267,12 @@ def harmonics(directions: Array) -> Array:
 
 
 def harmonics_backward(directions: Array, d_basis: Array) -> Array:
-    """dL/d directions (R, 3) for dL/dY (R, K)."""
+    """dL/d directions (R, 3).
+
+    Args:
+        directions: (R, 3) of unit length.
+        d_basis: (R, K), dL/dY.
+    """
     one = np.ones((len(directions), 1), directions.dtype)
     return sh.evaluate_backward(_whole(d_basis)[..., None], _whole(directions), one)[1]
 

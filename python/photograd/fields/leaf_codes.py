@@ -186,6 +186,14 @@ class LeafCodes(VoxelField):
         """The voxels, and what lies outside of them."""
         return {**self.active.state(), "background_density": np.array(self.background_density)}
 
+    def load_state(self, state: Mapping[str, Array]) -> None:
+        """Voxels are fixed: raises RangeError unless `state` is that of the same ones."""
+        own = self.state()
+        if set(state) != set(own) or not all(np.array_equal(state[k], own[k]) for k in own):
+            expected, got = f"this field's {sorted(own)}", f"{sorted(state)}"
+            remedy = "the voxels of leaf_codes cannot change"
+            raise RangeError(message("LeafCodes.load_state", "state", expected, got, remedy))
+
     @property
     def box(self) -> Array:
         """(2, 3) corners of the box in world meters."""
@@ -249,7 +257,7 @@ class LeafCodes(VoxelField):
         grid = SparseSh.example(seed=seed, dtype=dtype)
         small: dict[str, Any] = {"features": 3, "width": 8, "depth": 1}
         field = cls.from_sparse_sh(grid, seed=seed, **small)
-        field.params["codes"] *= 10
+        field.params["codes"] *= 4
         return field._smooth()
 
     def _smooth(self) -> Self:

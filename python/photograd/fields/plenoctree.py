@@ -19,8 +19,8 @@ from photograd.fields.tabulate import radiance_of, tabulated
 from photograd.representation import RayBatch, Start, register
 from photograd.types import Array
 
-SEEN_RAYS = 1 << 19
-"""Of all training views, that say which leaves are seen."""
+VISIBILITY_RAYS = 1 << 19
+"""Of all training views, that say which leaves are visible."""
 
 
 @register
@@ -51,7 +51,7 @@ class PlenOctree(OctreeSh):
         opacity: float = 0.01,
         prune: float = 0.01,
     ) -> Self:
-        """Tabulate a field of networks: cubic cells that are seen become leaves.
+        """Tabulate a field of networks: cubic cells that are visible become leaves.
 
         Args:
             field: that was fitted.
@@ -89,7 +89,7 @@ class PlenOctree(OctreeSh):
             least=prune,
         )
         if not len(leaves.density):
-            expected = f"a field with cells more opaque than {opacity} that are seen"
+            expected = f"a field with cells more opaque than {opacity} in sight of a view"
             raise RangeError(message("PlenOctree.from_field", "field", expected, "none"))
         return cls._of_leaves(leaves, kind, 1 / edge)
 
@@ -111,9 +111,9 @@ class PlenOctree(OctreeSh):
 
 
 def _training_rays(capture: Capture) -> Iterator[RayBatch]:
-    """Rays of all training views, evenly spaced, about `SEEN_RAYS` of them."""
+    """Rays of all training views, evenly spaced, about `VISIBILITY_RAYS` of them."""
     pixels = sum(view.camera.width * view.camera.height for view in capture.train)
-    stride = max(1, -(-pixels // SEEN_RAYS))
+    stride = max(1, -(-pixels // VISIBILITY_RAYS))
     for view in capture.train:
         chosen = np.arange(0, view.camera.width * view.camera.height, stride)
         yield RayBatch(*view.camera.rays(chosen), chosen.astype(np.uint32))

@@ -1,7 +1,7 @@
 """A field of networks, read into the leaves of an octree: the conversion of PlenOctrees [Yu2021].
 
 1. In each cell of a grid over the field's box, extinction is read at a few points; what is too
-   transparent to be seen stays empty.
+   transparent to be visible stays empty.
 2. Of the others, those stay that have a weight in some pixel of some photograph.
 3. In these, color is read at the points in many directions, and projected onto spherical harmonics
    of raw color (before the sigmoid); the points count as much as their opacity.
@@ -41,7 +41,7 @@ DARKEST, BRIGHTEST = 1e-3, 1 - 1e-3
 
 @dataclass(frozen=True)
 class Cells:
-    """Cells of a box that are seen: which ones (N, 3), and extinction (N, S) at points of each."""
+    """Cells of a box that are visible: which (N, 3), and extinction (N, S) at points of each."""
 
     box: Array
     shape: tuple[int, int, int]
@@ -53,12 +53,12 @@ class Cells:
         """Of a cell, in meters."""
         return float((self.box[1, 0] - self.box[0, 0]) / self.shape[0])
 
-    def points(self, sample: int) -> Array:
-        """(N, 3) the points of this number, in meters."""
-        return points_in(self.box, self.shape, self.index, sample)
-
     def kept(self, those: NDArray[np.bool_]) -> Cells:
-        """Some of them."""
+        """Some of them.
+
+        Args:
+            those: (N,).
+        """
         return Cells(self.box, self.shape, self.index[those], self.sigma_t[those])
 
 
@@ -87,7 +87,14 @@ def radiance_of(field: NeuralField, dt: float) -> Radiance:
 def points_in(
     box: Array, shape: tuple[int, int, int], index: NDArray[np.int64], sample: int
 ) -> Array:
-    """(N, 3) a random point in each of the cells `index` (N, 3), in meters, float64."""
+    """(N, 3) a random point in each of some cells, in meters, float64.
+
+    Args:
+        box: (2, 3) in meters.
+        shape: cells along each edge of the box.
+        index: (N, 3) which cells.
+        sample: number of the point in its cell.
+    """
     number = np.ravel_multi_index(tuple(index.T), shape)
     u = [uniform(0, step=0, pixel=number, sample=sample, dimension=k) for k in range(3)]
     points: Array = box[0] + (index + np.stack(u, axis=1)) * ((box[1] - box[0]) / shape)
@@ -115,9 +122,9 @@ def visible_cells(
         sigma_t = np.stack(
             [radiance(points_in(box, shape, index, s), along)[0] for s in range(POINTS)], axis=1
         )
-        seen = -expm1(-edge * sigma_t.mean(axis=1, dtype=np.float64)) > opacity
-        found.append(index[seen])
-        values.append(sigma_t[seen])
+        visible = -expm1(-edge * sigma_t.mean(axis=1, dtype=np.float64)) > opacity
+        found.append(index[visible])
+        values.append(sigma_t[visible])
     return Cells(box, shape, np.concatenate(found), np.concatenate(values))
 
 

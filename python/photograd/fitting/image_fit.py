@@ -129,15 +129,15 @@ def fit_image(
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: the descent has exploded; names the layer or level. The last checkpoint stays.
     """
-    place = None if folder is None else Path(folder)
+    checkpoints = None if folder is None else Path(folder)
     picture = Arguments("fit_image", np.float32).array(
         "picture", picture, ("H", "W", 3), min_length=1, low=0, high=1
     )
     policy = policy or ImagePolicy()
     job = ImageFit(picture, policy, options or ImageFitOptions())
-    with run_folder("fit_image", place, IMAGE_FILE, resume=resume):
-        if resume and place is not None:
-            job.load(place)
+    with run_folder("fit_image", checkpoints, IMAGE_FILE, resume=resume):
+        if resume and checkpoints is not None:
+            job.load(checkpoints)
         with progress_bar("fit", job, shown=bar) as on_step:
 
             def after_step(now: float) -> None:
@@ -145,7 +145,7 @@ def fit_image(
                 if on_step:
                     on_step(Progress(job.step_number, job.steps, job.losses[-1]))
 
-            run = descend(job, place, after_step=after_step, should_stop=should_stop)
+            run = descend(job, checkpoints, after_step=after_step, should_stop=should_stop)
     image = np.clip(job.field.image(*picture.shape[:2]), 0, 1)
     error = float(np.mean(np.square(image - picture), dtype=np.float64))
     losses = np.array(job.losses)

@@ -8,7 +8,8 @@
 //
 //   v_k     = <d_color, rgb_k> + d_depth (t0_k + t1_k) / 2
 //   d_s_k   = exp(-s_0 - ... - s_k) v_k - sum_{j>k} w_j v_j - d_T T
-//   d_sigma = (t1 - t0) d_s,   d_t1 = sigma d_s + w d_depth / 2,   d_t0 = -sigma d_s + w d_depth / 2
+//   d_sigma = (t1 - t0) d_s
+//   d_t1    = sigma d_s + w d_depth / 2,   d_t0 = -sigma d_s + w d_depth / 2
 //
 // As in ops/composite.h, the sum over later leaves is what the whole ray has left. A ray leaves a
 // box through the plane x_a = c at t = (c - o_a) / d_a, so dt/do_a = -1 / d_a, dt/dd_a = -t / d_a:
@@ -56,14 +57,14 @@ inline constexpr std::int64_t slab_rays = 1 << 15;
 inline constexpr int most_coefficients = sh_count(sh_max_degree);
 
 template <Real R>
-struct Piece {
+struct Segment {
     std::int32_t leaf, row;
     R t0, t1, sigma_t;
     R weight, behind;  // transmittance behind it
     [[nodiscard]] R middle() const { return (t0 + t1) / R(2); }
 };
 
-/// visit(piece) front to back, until less than `stop` is left of the ray; returns what is left.
+/// visit(segment) front to back, until less than `stop` is left of the ray; returns what is left.
 template <Real R, class Visit>
 R walk(const OctreeSh<R>& field, const R* origin, const R* direction, R stop, Visit&& visit) {
     R tau = R(0), front = R(1);
@@ -75,7 +76,7 @@ R walk(const OctreeSh<R>& field, const R* origin, const R* direction, R stop, Vi
         const R s = sigma_t * (t1 - t0), weight = front * -expm1(-s);
         tau += s;
         front = exp(-tau);
-        visit(Piece<R>{leaf, row, t0, t1, sigma_t, weight, front});
+        visit(Segment<R>{leaf, row, t0, t1, sigma_t, weight, front});
         return true;
     };
     field.tree->traverse(origin, direction, R(0), std::numeric_limits<R>::infinity(), meet);
@@ -100,7 +101,7 @@ void with_degree(int degree, Visit&& visit) {
         with_sh_degree(degree, visit);
 }
 
-/// What a piece of a ray adds to its row.
+/// What a segment of a ray adds to its row.
 template <Real R>
 struct Record {
     std::uint32_t row, ray;  // of the slab
@@ -139,7 +140,7 @@ void add_up(const OctreeSh<R>& field, const std::vector<Record<R>>& records,
     });
 }
 
-/// How the borders of a ray's pieces move with it.
+/// How the borders of a ray's segments move with it.
 template <Real R>
 struct BorderMotion {
     const TreeRays<R>& rays;
@@ -151,10 +152,10 @@ struct BorderMotion {
             boxes[static_cast<std::size_t>(leaf)] = box;
         });
     }
-    void add(std::int64_t ray, const Piece<R>& piece, R d_t0, R d_t1, double* d_o,
+    void add(std::int64_t ray, const Segment<R>& segment, R d_t0, R d_t1, double* d_o,
              double* d_d) const {
         const R *o = rays.origins + 3 * ray, *d = rays.directions + 3 * ray;
-        const LeafBox<3>& box = boxes[static_cast<std::size_t>(piece.leaf)];
+        const LeafBox<3>& box = boxes[static_cast<std::size_t>(segment.leaf)];
         R enter = -std::numeric_limits<R>::infinity(), leave = -enter;
         int in = 0, out = 0;
         for (int a = 0; a < 3; ++a) {
@@ -164,7 +165,7 @@ struct BorderMotion {
             if (std::min(low, high) > enter) enter = std::min(low, high), in = a;
             if (std::max(low, high) < leave) leave = std::max(low, high), out = a;
         }
-        if (piece.t0 > R(0)) move(ray, in, enter, d_t0, d_o, d_d);
+        if (segment.t0 > R(0)) move(ray, in, enter, d_t0, d_o, d_d);
         move(ray, out, leave, d_t1, d_o, d_d);
     }
 
@@ -196,7 +197,7 @@ void backward_ray(const OctreeSh<R>& field, const TreeRays<R>& rays, R stop,
     R left = d_depth * out.depth[ray], d_Y[count] = {};
     for (int a = 0; a < 3; ++a) left += d_color[a] * out.color[3 * ray + a];
     double d_o[3] = {}, d_d[3] = {};
-    walk(field, rays.origins + 3 * ray, rays.directions + 3 * ray, stop, [&](const Piece<R>& p) {
+    walk(field, rays.origins + 3 * ray, rays.directions + 3 * ray, stop, [&](const Segment<R>& p) {
         R rgb[3];
         color_of<Degree>(field, p.row, Y, rgb);
         R v = d_depth * p.middle();
@@ -238,7 +239,7 @@ void march_octree_sh(const OctreeSh<R>& field, const TreeRays<R>& rays, R stop,
                 sh_basis<Degree>(d[0], d[1], d[2], Y);
                 out.transmittance[ray] =
                     octree_sh::walk(field, rays.origins + 3 * ray, rays.directions + 3 * ray, stop,
-                                    [&](const octree_sh::Piece<R>& p) {
+                                    [&](const octree_sh::Segment<R>& p) {
                                         R rgb[3];
                                         octree_sh::color_of<Degree>(field, p.row, Y, rgb);
                                         for (int a = 0; a < 3; ++a) color[a] += p.weight * rgb[a];
@@ -288,7 +289,7 @@ void octree_sh_weights(const OctreeSh<R>& field, const TreeRays<R>& rays, R stop
         for (std::int64_t ray = begin; ray < end; ++ray)
             octree_sh::walk(
                 field, rays.origins + 3 * ray, rays.directions + 3 * ray, stop,
-                [&](const octree_sh::Piece<R>& p) {
+                [&](const octree_sh::Segment<R>& p) {
                     std::atomic_ref<R> most(max_weight[p.row]);
                     R before = most.load(std::memory_order_relaxed);
                     while (before < p.weight && !most.compare_exchange_weak(before, p.weight)) {
