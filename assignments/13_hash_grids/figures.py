@@ -199,7 +199,7 @@ def fig5_shared(module: ModuleType) -> tuple[Figure, Facts]:
             red="backward_last_point_counts",
         ),
         "less than half of what the terms are together": Fact(
-            abs(d_table[row, 0]) / total[row], 0.0, 0.5, red="backward_mean_of_row"
+            abs(d_table[row, 0]) / total[row], 0.0, 0.5, red="hash_never"
         ),
         "they come from several places": Fact(
             np.count_nonzero(by_corner), 4, 20, held="what sharing a row means"
