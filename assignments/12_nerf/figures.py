@@ -19,13 +19,16 @@ def fig1_view(module):
     scores = [parts.decibels(module.render(each, unseen), unseen["colors"]) for each in networks]
     count = sum(array.size for layers in networks[-1].values() for array in layers)
     normals, opacity = parts.normals(module, networks[-1], large)
-    floor = parts.nearest(large["origins"], large["directions"])[1] == 3
+    which = parts.nearest(large["origins"], large["directions"])[1]
+    floor, fog = which == 3, (which == -1) & (opacity > 0.5)
     facts = {
         "above 25 dB": Fact(scores[-1], 25, 60),
         "8180 numbers": Fact(count, 8180, 8180),
         "normals of the floor point up": Fact(
-            np.median(normals[floor & (opacity > 0.9)][:, 1]), 0.8, 1
+            np.median(normals[floor & (opacity > 0.9)][:, 1]), 0.7, 1
         ),
+        "there is fog before the background": Fact(np.sum(fog), 40, 5000),
+        "it is white": Fact(np.abs(got[fog] - 1).mean(), 0, 0.06),
         "it gets better all the time": Fact(bool(np.all(np.diff(scores) > 0))),
         "the last 1500 steps gain more than 2 dB": Fact(scores[-1] - scores[-2], 2, 10),
     }
@@ -39,7 +42,7 @@ def fig1_view(module):
     )
     for k, (title, colors) in enumerate(shown):
         axes = figure.add_subplot(grid[0, 5 * k : 5 * k + 5])
-        show(axes, colors.reshape(LARGE, LARGE, 3), title, "bilinear")
+        show(axes, colors.reshape(LARGE, LARGE, 3), title)
     for k, (mark, network) in enumerate(zip(parts.MARKS, networks, strict=True)):
         colors = np.clip(module.render(network, small), 0, 1) ** (1 / 2.2)
         title = f"{mark} steps: {scores[k]:.1f} dB"
@@ -188,8 +191,8 @@ def fig4_field(module):
     return figure, facts
 
 
-def show(axes, picture, title, interpolation="nearest"):
-    axes.imshow(picture, interpolation=interpolation)
+def show(axes, picture, title):
+    axes.imshow(picture, interpolation="nearest")
     axes.set(xticks=[], yticks=[])
     axes.set_title(title)
 

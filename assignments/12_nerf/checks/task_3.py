@@ -56,6 +56,9 @@ def known_distances(t):
     edges = np.array([[0.0, 1.0, 2.0, 3.0]])
     got = sampled(t, edges, np.array([[0.0, 0.5, 0.0]]), u)
     t.close("weights 0, 0.5, 0", got, np.array([[1.125, 1.375, 1.625, 1.875]]), reveal=True)
+    edges, weights = np.array([[0.0, 1.0, 2.0, 3.0, 4.0]]), np.array([[0.0, 1.0, 0.0, 1.0]])
+    got = sampled(t, edges, weights, np.zeros((1, 2)))
+    t.close("weights 0, 1, 0, 1 and u = 0", got, np.array([[1.0, 3.0]]), reveal=True)
 
 
 @check(
