@@ -7,7 +7,7 @@ from photograd_course.viz.handout import Fact, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
-LARGE = 120  # pixels of the view of Figure 1
+LARGE = 110  # pixels of the view of Figure 1
 
 
 def fig1_view(module):

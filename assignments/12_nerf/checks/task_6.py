@@ -27,7 +27,7 @@ def draws(t, views, seed, times):
 
 def distances_of(t, views, network, drawn):
     """The distances of a step, put together from your functions, and the rays that it takes."""
-    chosen, u, v = drawn
+    chosen, u, numbers = drawn
     names = ("origins", "directions", "colors")
     batch = {**views, **{name: views[name][chosen] for name in names}}
     ends = np.repeat([[views["near"], views["far"]]], len(u), axis=0)
@@ -36,7 +36,7 @@ def distances_of(t, views, network, drawn):
     p, d = t.call("points_on", batch, first, returns=Items(Array((u.size, 3)), Array((u.size, 3))))
     dense = field(t, network, p, d)[0].reshape(first.shape)
     share = t.call("ray_weights", dense, np.diff(cuts), returns=Array(first.shape))
-    second = sampled(t, cuts, share + 0.01, v)
+    second = sampled(t, cuts, share + 0.01, numbers)
     return batch, np.sort(np.hstack([first, second]))
 
 
