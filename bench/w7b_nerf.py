@@ -13,10 +13,12 @@ import _common
 import _inputs
 import numpy as np
 from photograd._compiled import _core
-from photograd.network import FrequencyEncoding, Perceptron
+from photograd.network import FrequencyEncoding, LayerValues, Perceptron
 
 SIZES = [63, *[256] * 8, 4]
 SKIP = 4
+PIECE = 16_384
+"""Points whose numbers of all layers are kept for the backward pass at a time."""
 
 
 class Network:
@@ -34,19 +36,29 @@ class Network:
             W[:] = given
         self.weights = sum(w.size for w in weights)
         self.d_parameters = np.empty_like(self.parameters)
+        self.values = LayerValues()
         self.inputs = _inputs.inputs_row(f"W7b points={count}", points, self.targets, *weights)
 
     def forward(self) -> None:
         self.outputs = self.network.forward(self.parameters, self.encoding.encode(self.points))
 
     def forward_backward(self) -> None:
-        features = self.encoding.encode(self.points)
-        self.outputs = self.network.forward(self.parameters, features)
-        d_outputs = (self.outputs - self.targets) * np.float32(2.0 / self.targets.size)
         self.d_parameters[:] = 0.0
-        self.network.backward(
-            self.parameters, features, d_outputs, out=self.d_parameters, d_inputs=False
-        )
+        self.outputs = np.empty_like(self.targets)
+        for first in range(0, len(self.points), PIECE):
+            part = slice(first, first + PIECE)
+            features = self.encoding.encode(self.points[part])
+            got = self.network.forward(self.parameters, features, values=self.values)
+            d_outputs = (got - self.targets[part]) * np.float32(2.0 / self.targets.size)
+            self.outputs[part] = got
+            self.network.backward(
+                self.parameters,
+                features,
+                d_outputs,
+                out=self.d_parameters,
+                d_inputs=False,
+                values=self.values,
+            )
 
     def quality(self) -> dict[str, float]:
         difference = self.outputs.astype(np.float64) - self.targets

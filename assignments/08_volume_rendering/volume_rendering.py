@@ -208,8 +208,8 @@ def render_adjoint(
         each; handout section 6.
     """
     # >>> solution 08.6
-    places, lengths = ray_samples(low, high, origins, directions, n)
-    flat = places.reshape(-1, 3)
+    points, lengths = ray_samples(low, high, origins, directions, n)
+    flat = points.reshape(-1, 3)
     found = trilinear(grid, flat).reshape(*lengths.shape, 4)
     extinction, shade = found[:, :, 3], found[:, :, :3]
     opaque = np.zeros(len(d_pixel))

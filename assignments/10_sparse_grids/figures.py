@@ -116,13 +116,13 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     stride = np.stack([np.full(4, 0.493), 0.493 * tilt, np.zeros(4)], axis=1)
     asked = []
 
-    def leaf(places: Array) -> tuple[Array, Array, Array]:
-        asked.append(places)
-        return module.octree_leaf(tree, n, places)
+    def leaf(points: Array) -> tuple[Array, Array, Array]:
+        asked.append(points)
+        return module.octree_leaf(tree, n, points)
 
     wanted = module.skip_empty(leaf, first, stride, count)
-    places = first[:, None] + np.arange(count)[:, None] * stride[:, None]
-    right = full[tuple(np.moveaxis(np.floor(places).astype(int), 2, 0))]
+    points = first[:, None] + np.arange(count)[:, None] * stride[:, None]
+    right = full[tuple(np.moveaxis(np.floor(points).astype(int), 2, 0))]
     questions = np.concatenate(asked)
     fine = first[:, None] + np.linspace(-0.5, count - 0.5, 6400)[:, None] * stride[:, None]
     inside = full[tuple(np.moveaxis(np.clip(np.floor(fine), 0, n - 1).astype(int), 2, 0))]
@@ -149,8 +149,8 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
             )
         )
     for r in range(4):
-        axes.plot(*places[r, :, :2].T, ".", color=GRAY, markersize=2.5)
-        axes.plot(*places[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
+        axes.plot(*points[r, :, :2].T, ".", color=GRAY, markersize=2.5)
+        axes.plot(*points[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
     axes.plot(
         *questions[:, :2].T,
         "o",

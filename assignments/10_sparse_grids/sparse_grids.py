@@ -71,23 +71,23 @@ def octree_from_dense(full: Cube) -> Tree:
     # <<< solution
 
 
-def octree_leaf(tree, n, places):
-    """The leaves that contain given points.
+def octree_leaf(tree, n, points):
+    """The leaves that contain the points.
 
     Args:
         tree: (N,), of `octree_from_dense`.
         n: cells per side of the cube.
-        places: (M, 3), points in cells, inside the cube.
+        points: (M, 3), in cells, inside the cube.
 
     Returns:
         (full, low, side): (M,) of bool; (M, 3), the lower corner of the leaf in cells; (M,), its
         side. A point on a common face belongs to the upper leaf.
     """
-    node = np.zeros(len(places), np.int64)
-    low, side = np.zeros(places.shape), np.full(len(places), float(n))
+    node = np.zeros(len(points), np.int64)
+    low, side = np.zeros(points.shape), np.full(len(points), float(n))
     while (inner := tree[node] > 0).any():
         side = np.where(inner, side / 2, side)
-        upper = (places >= low + side[:, None]) & inner[:, None]
+        upper = (points >= low + side[:, None]) & inner[:, None]
         low = low + upper * side[:, None]
         node = np.where(inner, tree[node] + upper @ np.array([4, 2, 1]), node)
     return tree[node] == FULL, low, side
@@ -192,13 +192,13 @@ def voxel_hash_insert(table: Table, voxels: Voxels, rows: Rows) -> Table:
     # <<< solution
 
 
-def corners(table, places):
+def corners(table, points):
     """The eight voxels around each point: (row, weight), both (8, M); row -1 for an absent one.
 
     Values belong to the centers of cells; weights are trilinear and sum to 1.
     """
-    low = np.floor(places - 0.5).astype(np.int64)
-    part = places - 0.5 - low
+    low = np.floor(points - 0.5).astype(np.int64)
+    part = points - 0.5 - low
     row, weight = [], []
     for corner in np.ndindex(2, 2, 2):
         row.append(voxel_hash_find(table, low + corner))
@@ -303,7 +303,7 @@ def march(n, voxels, table, rays):
     tree = octree_from_dense(touched)
     wanted, hits = np.zeros((len(step), 2 * n), bool), step > 0
     wanted[hits] = skip_empty(
-        lambda places: octree_leaf(tree, n, places), first[hits], stride[hits], 2 * n
+        lambda points: octree_leaf(tree, n, points), first[hits], stride[hits], 2 * n
     )
     ray, k = np.nonzero(wanted)
     return wanted, step, *corners(table, first[ray] + k[:, None] * stride[ray])

@@ -73,8 +73,8 @@ def ball_scene(module, n, light, second=False):
 
 def photographs(views, pixels, twist=0.0):
     """Rays of cameras spread evenly all around, that look at the middle."""
-    places = 3.2 * all_around(views, 2 * np.pi * twist)
-    return rays_to_origin(places, pixels, np.tan(0.375))
+    positions = 3.2 * all_around(views, 2 * np.pi * twist)
+    return rays_to_origin(positions, pixels, np.tan(0.375))
 
 
 def dilated(mask):

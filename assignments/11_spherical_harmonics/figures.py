@@ -50,11 +50,11 @@ def fig1_harmonics(module):
 def fig2_projection(module):
     """A sky and its projections to degree 0, 1, 2 and 4."""
     d, weights = module.quadrature(40)
-    places, shape = parts.direction_map(48)
-    rows, shown = {}, [("the sky", parts.sky(places)[:, 0])]
+    directions, shape = parts.direction_map(48)
+    rows, shown = {}, [("the sky", parts.sky(directions)[:, 0])]
     for degree in (0, 1, 2, 4):
         c = module.sh_project(d, weights, parts.sky(d), degree)
-        shown.append((f"degree {degree}", (module.sh_basis(places, degree) @ c)[:, 0]))
+        shown.append((f"degree {degree}", (module.sh_basis(directions, degree) @ c)[:, 0]))
         again = module.sh_basis(d, degree) @ c
         rows[degree] = again, float(np.sqrt(weights @ (again - parts.sky(d)) ** 2)[0])
     means = [
@@ -71,7 +71,7 @@ def fig2_projection(module):
             max(abs(mean - 1) for mean in means), 0, 1e-9, red="project_mean"
         ),
         "degree 4 finds the light to 10 degrees": Fact(
-            np.degrees(np.arccos(places[np.argmax(peak)] @ LIGHT)), 0, 10, red="recurrence_sign"
+            np.degrees(np.arccos(directions[np.argmax(peak)] @ LIGHT)), 0, 10, red="recurrence_sign"
         ),
         "degree 4 keeps less than half of the light's peak": Fact(
             peak.max() / shown[0][1].max(), 0.1, 0.5, red="project_summed"

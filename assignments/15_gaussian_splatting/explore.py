@@ -294,7 +294,8 @@ else:
     d_shown = draws.uniform(-1.0, 1.0, mine_shown.shape)
     mine_d, core_d = mine_back(d_shown), core_back(d_shown)
     worst = max(off(mine_d[key], core_d[key]) for key in (*mine.RATES, "background"))
-    print(f"core:   images differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}")
+    shown = off(mine_shown, core_shown)
+    print(f"core:   images differ by {shown:.0e}, derivatives differ by {worst:.0e}")
     wider, kept_back = option("core-pixels", 200), mine.picture
     sharp = [(each, photograph(each)) for each in around(2 * count, wider)]
     mine.picture, before = core, time.perf_counter()

@@ -87,7 +87,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
+def fig3_absgrad(module: ModuleType) -> tuple[Figure, Facts]:
     """One splat over two stripes: the gradient of each pixel; fits with density control."""
     n = 16
     camera = parts.camera_at(np.array([0.0, 0.0, -2.0]), n)
@@ -284,12 +284,14 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 FIGURES = figures_of(
-    *map(parts.calm, (fig1_projection, fig2_weights, fig3_pull, fig4_fit, fig5_arrows, fig6_three))
+    *map(
+        parts.calm, (fig1_projection, fig2_weights, fig3_absgrad, fig4_fit, fig5_arrows, fig6_three)
+    )
 )
 RED = {
     "fig1_projection": "lens_not_held",
     "fig2_weights": "blend_inclusive",
-    "fig3_pull": "pull_of_the_sum",
+    "fig3_absgrad": "absgrad_of_the_sum",
     "fig4_fit": "alpha_back_mean_sign",
     "fig5_arrows": "alpha_back_mean_sign",
     "fig6_three": "alpha_back_mean_sign",

@@ -8,8 +8,6 @@
 // visibly.
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -23,6 +21,7 @@
 #include "photograd/core/errors.h"
 #include "photograd/core/parallel.h"
 #include "photograd/core/world_limit.h"
+#include "pybind.h"
 
 namespace photograd {
 

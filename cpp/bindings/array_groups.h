@@ -1,12 +1,11 @@
 // Arrays that belong together: a tuple in Python, one argument here.
 #pragma once
 
-#include <pybind11/stl.h>
-
 #include <array>
 #include <vector>
 
 #include "array_args.h"
+#include "pybind.h"
 
 namespace photograd {
 

@@ -1,5 +1,4 @@
 // Meshes, instances and the hierarchy that finds what rays hit.
-#include <pybind11/stl.h>
 
 #include <optional>
 

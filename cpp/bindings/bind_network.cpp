@@ -1,5 +1,4 @@
 // Multilayer perceptrons and input encodings; photograd.network is the typed face.
-#include <pybind11/stl.h>
 
 #include "module.h"
 #include "network_args.h"
@@ -35,31 +34,48 @@ PerceptronShape shape_of(int inputs, const std::vector<int>& widths, int hidden,
     return {inputs, widths, static_cast<Activation>(hidden), static_cast<Activation>(output), skip};
 }
 
+/// Refuses values of layers that the kernel does not fill.
+template <class R>
+void check_values(const ArrayArgs& args, bool fused, const PerceptronValues* values) {
+    if (values && !(fused && std::is_same_v<R, float>))
+        args.range("values", "none, unless the kernel runs in float32", "some");
+}
+
 void layers_forward(const PerceptronShape& shape, const py::array& parameters,
-                    const py::array& inputs, py::array outputs, bool fused) {
+                    const py::array& inputs, py::array outputs, bool fused,
+                    std::optional<PerceptronValues*> kept) {
+    PerceptronValues* values = kept.value_or(nullptr);
     dispatch_real("perceptron_forward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
+        check_values<R>(args, fused, values);
         const R* p = network_parameters<R>(args, "parameters", shape, parameters);
         const R* in = args.in<R>("inputs", inputs, "N " + std::to_string(shape.inputs));
         R* out = args.out<R>("outputs", outputs, "N " + std::to_string(shape.outputs()));
         const py::gil_scoped_release release;
-        perceptron_forward<R>(shape, p, args.size("N"), in, out, !fused);
+        perceptron_forward<R>(shape, p, args.size("N"), in, out, !fused, values);
     });
 }
 
 void layers_backward(const PerceptronShape& shape, const py::array& parameters,
                      const py::array& inputs, const py::array& d_outputs, py::array d_parameters,
-                     std::optional<py::array> d_inputs, bool fused) {
+                     std::optional<py::array> d_inputs, bool fused,
+                     std::optional<PerceptronValues*> kept) {
+    PerceptronValues* values = kept.value_or(nullptr);
     dispatch_real("perceptron_backward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
+        check_values<R>(args, fused, values);
         const R* p = network_parameters<R>(args, "parameters", shape, parameters);
         const std::string in_axes = "N " + std::to_string(shape.inputs);
         const R* in = args.in<R>("inputs", inputs, in_axes);
         const R* d_out = args.in<R>("d_outputs", d_outputs, "N " + std::to_string(shape.outputs()));
         R* d_p = args.out<R>("d_parameters", d_parameters, std::to_string(shape.parameters()));
         R* d_in = d_inputs ? args.out<R>("d_inputs", *d_inputs, in_axes) : nullptr;
+        const std::int64_t samples = args.size("N");
+        if (values && (values->samples != samples || values->parameters != shape.parameters()))
+            args.range("values", "those of forward at these " + std::to_string(samples) + " inputs",
+                       "values of " + std::to_string(values->samples) + " inputs");
         const py::gil_scoped_release release;
-        perceptron_backward<R>(shape, p, args.size("N"), in, d_out, d_p, d_in, !fused);
+        perceptron_backward<R>(shape, p, samples, in, d_out, d_p, d_in, !fused, values);
     });
 }
 
@@ -216,12 +232,16 @@ void bind_network(py::module_& m) {
         .def(py::init(&shape_of), py::arg("inputs"), py::arg("widths"), py::arg("hidden"),
              py::arg("output"), py::arg("skip"))
         .def_property_readonly("parameters", &PerceptronShape::parameters);
-    m.def("perceptron_forward", &layers_forward, py::arg("shape"), py::arg("parameters"),
-          py::arg("inputs"), py::arg("outputs"), py::arg("fused") = true,
-          "Writes outputs of inputs (N, shape's). fused: by the kernel, for float32.");
+    py::class_<PerceptronValues>(m, "PerceptronValues").def(py::init<>());
+    m.def(
+        "perceptron_forward", &layers_forward, py::arg("shape"), py::arg("parameters"),
+        py::arg("inputs"), py::arg("outputs"), py::arg("fused") = true,
+        py::arg("values") = py::none(),
+        "Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.");
     m.def("perceptron_backward", &layers_backward, py::arg("shape"), py::arg("parameters"),
           py::arg("inputs"), py::arg("d_outputs"), py::arg("d_parameters"), py::arg("d_inputs"),
-          py::arg("fused") = true, "Adds to d_parameters; writes d_inputs unless None.");
+          py::arg("fused") = true, py::arg("values") = py::none(),
+          "Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.");
     bind_encodings(m);
 }
 

@@ -1,6 +1,4 @@
 // Octrees and quadtrees: the tree is an object, the payloads of its leaves are an array (L, C).
-#include <pybind11/functional.h>
-#include <pybind11/stl.h>
 
 #include <cstring>
 #include <memory>

@@ -1,5 +1,4 @@
 // Sparse grids and their files; photograd.grids.sparse is the typed face.
-#include <pybind11/stl.h>
 
 #include "array_args.h"
 #include "module.h"

@@ -1,6 +1,5 @@
 // Texture lookups, mip maps and the plan of a texture's recovery. Results are added to, or written
 // into, arrays that the Python face (photograd.textures) makes.
-#include <pybind11/stl.h>
 
 #include <memory>
 #include <optional>

@@ -3,12 +3,11 @@
 // also by how far and how it turns.
 #pragma once
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 
 #include "array_args.h"
 #include "photograd/camera/thin_lens.h"
+#include "pybind.h"
 
 namespace photograd {
 

@@ -2,10 +2,9 @@
 // (scene/gradient.h) to arrays of the scene's dtype.
 #pragma once
 
-#include <pybind11/stl.h>
-
 #include "path_args.h"
 #include "photograd/scene/gradient.h"
+#include "pybind.h"
 
 namespace photograd {
 

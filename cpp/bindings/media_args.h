@@ -4,13 +4,12 @@
 //   (name of the phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj)
 #pragma once
 
-#include <pybind11/stl.h>
-
 #include <optional>
 #include <tuple>
 
 #include "array_args.h"
 #include "photograd/scene/path_scene.h"
+#include "pybind.h"
 
 namespace photograd {
 

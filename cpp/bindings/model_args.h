@@ -2,8 +2,6 @@
 // scalars a model.
 #pragma once
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <span>
 
@@ -12,6 +10,7 @@
 #include "photograd/core/params.h"
 #include "photograd/core/real.h"
 #include "photograd/core/scatter.h"
+#include "pybind.h"
 
 namespace photograd {
 

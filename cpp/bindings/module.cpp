@@ -25,9 +25,11 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_sh(m);
     photograd::bind_texture(m);
     photograd::bind_octree(m);
+    photograd::bind_octree_sh(m);
     photograd::bind_voxel_hash(m);
     photograd::bind_sparse(m);
     photograd::bind_bricks(m);
     photograd::bind_splat(m);
     photograd::bind_sparse_sh(m);
+    photograd::bind_samples(m);
 }

@@ -1,7 +1,7 @@
 // The parts of the module _core: one bind_<part> function a file. No mathematics in this folder.
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "pybind.h"
 
 namespace photograd {
 
@@ -24,11 +24,13 @@ void bind_reference(py::module_& m);
 void bind_sdf(py::module_& m);
 void bind_path(py::module_& m);
 void bind_sampling(py::module_& m);
+void bind_samples(py::module_& m);
 void bind_network(py::module_& m);
 void bind_neural(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
 void bind_octree(py::module_& m);
+void bind_octree_sh(py::module_& m);
 void bind_voxel_hash(py::module_& m);
 void bind_sparse(py::module_& m);
 void bind_bricks(py::module_& m);

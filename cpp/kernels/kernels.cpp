@@ -4,6 +4,7 @@
 
 #include "kernels/blend_splats.inl"
 #include "kernels/gather_sparse_sh.inl"
+#include "kernels/hash_encoding.inl"
 #include "kernels/march_dense.inl"
 #include "kernels/march_sparse_sh.inl"
 #include "kernels/perceptron.inl"
@@ -29,6 +30,10 @@ extern const Kernels table{
     .march_sparse_sh_backward = &march_sparse_sh_backward,
     .march_sparse_sh_weights = &march_sparse_sh_weights,
     .march_sparse_sh_gather = &march_sparse_sh_gather,
+    .hash_encode = &hash_encode,
+    .hash_scatter = &hash_scatter,
+    .hash_points = &hash_points,
+    .perceptron_pack = &perceptron_pack,
     .perceptron_forward = &perceptron_forward,
     .perceptron_backward = &perceptron_backward,
     .principled_values = &principled_values,

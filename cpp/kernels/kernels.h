@@ -2,6 +2,7 @@
 // that the processor has, or the one that the environment variable PHOTOGRAD_ISA names.
 #pragma once
 
+#include "kernels/hash_encoding.h"
 #include "kernels/march_dense.h"
 #include "kernels/march_sparse_sh.h"
 #include "kernels/perceptron.h"
@@ -35,6 +36,10 @@ struct Kernels {
     void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
+    void (*hash_encode)(const HashEncode&, std::int64_t begin, std::int64_t end);
+    void (*hash_scatter)(const HashScatter&, std::int64_t begin, std::int64_t end);
+    void (*hash_points)(const HashPoints&, std::int64_t begin, std::int64_t end);
+    void (*perceptron_pack)(const PerceptronLayer&, float* packed, float* transposed);
     void (*perceptron_forward)(const PerceptronBlock&);
     void (*perceptron_backward)(const PerceptronBlock&, const PerceptronBackward&);
     /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is

@@ -1,5 +1,5 @@
 // Product of two matrices of float: what the kernel gets. Plain data only, because every
-// instruction set's translation unit includes it. network/product.h says what is calculated.
+// instruction set's translation unit includes it. The product of a and b is added to c.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@ namespace photograd {
 
 struct MultiplyArgs {
     int rows, columns, depth;  // columns is a multiple of 32
-    const float* a;            // a[m * a_row + k * a_depth]
-    std::int64_t a_row, a_depth;
+    const float* a;            // packed by pack_rows where a_row is 0, else a[m * a_row + k]
+    std::int64_t a_row;
     const float* b;  // b[k * b_row + n]
     std::int64_t b_row;
     float* c;  // c[m * c_row + n], added to

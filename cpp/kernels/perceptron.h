@@ -16,8 +16,9 @@ struct PerceptronLayer {
     int activation;          // of Activation
     bool takes_input_again;  // behind what the layer before gives
     const float *weights, *biases;
-    std::int64_t input, output;  // where its block begins in the workspace
-    std::int64_t d_weights;      // where its block of derivatives begins
+    const float *packed, *packed_transposed;  // the weights, as perceptron_pack orders them
+    std::int64_t input, output;               // where its block begins in the workspace
+    std::int64_t d_weights;                   // where its block of derivatives begins
 };
 
 /// Derivatives of a layer's weights lie in rows of this length: the weights, the bias, zeros.

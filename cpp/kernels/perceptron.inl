@@ -64,6 +64,12 @@ static inline void copy_rows(const float* from, int rows, float* to) {
     });
 }
 
+// Writes the weights of a layer, gives x takes numbers each, in the order of multiply.
+static void perceptron_pack(const PerceptronLayer& layer, float* packed, float* transposed) {
+    pack_rows(layer.weights, layer.takes, 1, layer.gives, layer.takes, packed);
+    pack_rows(layer.weights, 1, layer.takes, layer.takes, layer.gives, transposed);
+}
+
 static void perceptron_forward(const PerceptronBlock& p) {
     const int columns = columns_of(p.samples);
     for (int l = 0; l < p.count; ++l) {
@@ -76,9 +82,8 @@ static void perceptron_forward(const PerceptronBlock& p) {
         multiply({.rows = layer.gives,
                   .columns = columns,
                   .depth = layer.takes,
-                  .a = layer.weights,
-                  .a_row = layer.takes,
-                  .a_depth = 1,
+                  .a = layer.packed,
+                  .a_row = 0,
                   .b = x,
                   .b_row = perceptron_block,
                   .c = y,
@@ -118,7 +123,6 @@ static void perceptron_backward(const PerceptronBlock& p, const PerceptronBackwa
                   .depth = p.samples,
                   .a = d,
                   .a_row = perceptron_block,
-                  .a_depth = 1,
                   .b = transposed,
                   .b_row = row,
                   .c = b.d_weights + layer.d_weights,
@@ -131,9 +135,8 @@ static void perceptron_backward(const PerceptronBlock& p, const PerceptronBackwa
         multiply({.rows = layer.takes,
                   .columns = columns,
                   .depth = layer.gives,
-                  .a = layer.weights,
-                  .a_row = 1,
-                  .a_depth = layer.takes,
+                  .a = layer.packed_transposed,
+                  .a_row = 0,
                   .b = d,
                   .b_row = perceptron_block,
                   .c = d_x,

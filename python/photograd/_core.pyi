@@ -24,6 +24,7 @@ __all__: list[str] = [
     "Op",
     "PathGeometry",
     "PerceptronShape",
+    "PerceptronValues",
     "PhaseFunction",
     "PhotonMap",
     "PreparedRays32",
@@ -42,6 +43,7 @@ __all__: list[str] = [
     "TexturePlan",
     "VoxelHash",
     "ambient_occlusion",
+    "blend_samples",
     "bsdfs",
     "build_mips",
     "build_mips_backward",
@@ -72,6 +74,8 @@ __all__: list[str] = [
     "march_backward",
     "march_neural",
     "march_neural_backward",
+    "march_octree_sh",
+    "march_octree_sh_backward",
     "march_sparse_sh",
     "march_sparse_sh_backward",
     "max_samples",
@@ -81,6 +85,7 @@ __all__: list[str] = [
     "neural_direction_numbers",
     "normalized_diffusion",
     "normalized_diffusion_backward",
+    "octree_sh_weights",
     "one_blob_encode",
     "one_blob_encode_backward",
     "ops",
@@ -104,6 +109,8 @@ __all__: list[str] = [
     "sample_diffusion_radius_backward",
     "sample_mips",
     "sample_mips_backward",
+    "sample_weights",
+    "sample_weights_backward",
     "sampled_lights",
     "set_thread_count",
     "sh_colors",
@@ -128,6 +135,7 @@ __all__: list[str] = [
     "trace_photons",
     "trace_reference",
     "uniform",
+    "visible_samples",
     "write_vdb",
 ]
 
@@ -795,6 +803,9 @@ class PerceptronShape:
     @property
     def parameters(self) -> int: ...
 
+class PerceptronValues:
+    def __init__(self) -> None: ...
+
 class HashSettings:
     def __init__(
         self,
@@ -1250,6 +1261,13 @@ def ambient_occlusion(
     Adds the free part of each sample to sums (H, W), float64.
     """
 
+def blend_samples(
+    offset: numpy.ndarray, weight: numpy.ndarray, values: numpy.ndarray
+) -> numpy.ndarray:
+    """
+    (R, C): the sum of weight times values (M, C) over the samples of each ray.
+    """
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -1476,6 +1494,38 @@ def march_neural_backward(
     Adds to d_parameters, and to d_rays unless None.
     """
 
+def march_octree_sh(
+    tree: Octree,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    density_scale: typing.SupportsFloat | typing.SupportsIndex,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    cell: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    stop: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[typing.Any, ...]:
+    """
+    (color, transmittance, depth) of rays through the leaves of an octree. parameters: row (L,), density (N,), sh (N, K, 3); rays: origins and directions in cells, directions in the world, (R, 3) each; cell (3,): sides of a cell in meters.
+    """
+
+def march_octree_sh_backward(
+    tree: Octree,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    density_scale: typing.SupportsFloat | typing.SupportsIndex,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    cell: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    stop: typing.SupportsFloat | typing.SupportsIndex,
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"],
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
+) -> None:
+    """
+    Adds to d_parameters, d_density and d_sh, and to d_rays unless None.
+    """
+
 def march_sparse_sh(
     table: CellTable,
     parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
@@ -1545,6 +1595,21 @@ def normalized_diffusion_backward(
     Adds to d_rows (N, 3) for d_values (N,).
     """
 
+def octree_sh_weights(
+    tree: Octree,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    density_scale: typing.SupportsFloat | typing.SupportsIndex,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    cell: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    stop: typing.SupportsFloat | typing.SupportsIndex,
+    max_weight: numpy.ndarray,
+) -> None:
+    """
+    Raises max_weight (N,) to the largest weight of each row in one of these rays.
+    """
+
 def one_blob_encode(
     points: numpy.ndarray, bins: typing.SupportsInt | typing.SupportsIndex, features: numpy.ndarray
 ) -> None: ...
@@ -1567,9 +1632,10 @@ def perceptron_backward(
     d_parameters: numpy.ndarray,
     d_inputs: numpy.ndarray | None,
     fused: bool = True,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
-    Adds to d_parameters; writes d_inputs unless None.
+    Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.
     """
 
 def perceptron_forward(
@@ -1578,9 +1644,10 @@ def perceptron_forward(
     inputs: numpy.ndarray,
     outputs: numpy.ndarray,
     fused: bool = True,
+    values: PerceptronValues | None = None,
 ) -> None:
     """
-    Writes outputs of inputs (N, shape's). fused: by the kernel, for float32.
+    Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
@@ -1738,6 +1805,23 @@ def sample_mips_backward(
 ) -> None:
     """
     Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).
+    """
+
+def sample_weights(
+    offset: numpy.ndarray, sigma_t: numpy.ndarray, dt: typing.SupportsFloat | typing.SupportsIndex
+) -> tuple[typing.Any, ...]:
+    """
+    weight (M,), transmittance behind each sample (M,), and of each ray (R,).
+    """
+
+def sample_weights_backward(
+    offset: numpy.ndarray,
+    weights: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"],
+    dt: typing.SupportsFloat | typing.SupportsIndex,
+    d_weights: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"],
+) -> numpy.ndarray:
+    """
+    d_sigma_t (M,). weights: weight and behind; d_weights: d_weight, d_transmittance (R,).
     """
 
 def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None:
@@ -2077,6 +2161,15 @@ def uniform(
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
     Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.
+    """
+
+def visible_samples(
+    table: CellTable,
+    settings: MarchSettings,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+) -> tuple[typing.Any, ...]:
+    """
+    offset (R + 1,), t (M,) and points (M, 3) in voxels of the samples of rays that lie in cells with an active voxel.
     """
 
 def write_vdb(

@@ -12,7 +12,10 @@ Background = Literal["random", "white", "black", "learned"]
 BackgroundOption = Literal["auto", "random", "white", "black", "learned"]
 DensityControlOption = Literal["mcmc", "clone_split_prune", "none"]
 """Of Gaussians: a fixed number that wanders, a growing one, or none."""
+Decode = Literal["sample", "ray"]
+"""Where a network that decodes codes is evaluated: at each sample, or once a ray."""
 BACKGROUNDS: tuple[Background, ...] = get_args(Background)
+DECODES: tuple[Decode, ...] = get_args(Decode)
 DENSITY_CONTROLS: tuple[DensityControlOption, ...] = get_args(DensityControlOption)
 
 MAX_DEGREE = 3
@@ -47,6 +50,7 @@ class FitOptions:
         prune: a sparse grid drops voxels that weigh less than this in every pixel; 0 drops none.
         gaussians: at most this many.
         density_control: of Gaussians: "mcmc", "clone_split_prune" or "none".
+        decode: of codes: "sample" or "ray".
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
     """
@@ -68,6 +72,7 @@ class FitOptions:
     prune: float = 0.02
     gaussians: int = 30_000
     density_control: DensityControlOption = "mcmc"
+    decode: Decode = "sample"
     final_mean_rate: float = 0.01
     ssim_weight: float = 0.2
 

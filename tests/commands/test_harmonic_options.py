@@ -46,9 +46,9 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
         (
             "dense_grid",
             ("--degree", 1),
-            "--degree: expected a fit of dense_sh or gaussians or octree_sh or sparse",
+            "--degree: expected a fit of dense_sh or gaussians or octree_sh or plenoctree",
         ),
-        ("dense_sh", ("--prune", 0.1), "--prune: expected a fit of sparse_sh, got 'dense_sh'"),
+        ("dense_sh", ("--prune", 0.1), "fit of plenoctree or sparse_sh, got 'dense_sh'"),
     ],
 )
 def test_options_without_effect_are_refused(

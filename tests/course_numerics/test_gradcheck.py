@@ -53,9 +53,9 @@ def test_the_right_gradient_passes() -> None:
     assert report.passed, str(report)
     assert report
     assert [group.name for group in report.groups] == ["a", "b", "c"]
-    # Central differences of a smooth float64 function reach 1e-8 at their best step.
-    assert all(0.0 < group.error < 1e-8 for group in report.groups)
-    assert all(len(group.curve) == len(gradcheck.STEPS) for group in report.groups)
+    # Central differences of a smooth float64 function agree at a step in the middle.
+    assert all(0.0 < group.error < 1e-7 for group in report.groups)
+    assert all(len(group.curve) == 1 for group in report.groups)
     assert "passed" in str(report)
 
 
@@ -64,7 +64,9 @@ def test_the_right_gradient_passes() -> None:
 def test_a_wrong_group_is_named(group: str, factor: float) -> None:
     report = check_gradient(value, scaled(group, factor), place(), seed=3)
     assert not report
-    assert [g.name for g in report.groups if not g.passed] == [group]
+    (failed,) = (g for g in report.groups if not g.passed)
+    assert failed.name == group
+    assert [step for step, _ in failed.curve] == list(gradcheck.STEPS)
     assert "FAILED" in str(report)
 
 

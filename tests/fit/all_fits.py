@@ -28,11 +28,17 @@ JOBS: dict[str, dict[str, Any]] = {
     "dense_sh": {"resolution": 12, "rays": 128, "steps": 8, "degree": 1},
     "sparse_sh": {"resolution": 16, "rays": 256, "steps": 20},
     "octree_sh": {"rays": 64, "steps": 5, "degree": 1},
-    "hash_grid": {"resolution": 32, "rays": 16, "steps": 18},  # looks at its cells twice
+    # Dense enough to leave leaves; looks at its cells twice.
+    "hash_grid": {"resolution": 32, "rays": 16, "steps": 18, "sigma_t": 2.0},
     "nerf": {"resolution": 16, "rays": 16, "steps": 18},
+    "plenoctree": {"resolution": 16, "rays": 64, "steps": 5, "degree": 1, "prune": 0.0},
+    "leaf_codes": {"rays": 32, "steps": 4},
     "gaussians": {"gaussians": 200, "steps": 12},
     "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
 }
+
+
+STARTS_FROM = {"sparse_sh": ("octree_sh", "leaf_codes"), "hash_grid": ("plenoctree",)}
 
 
 def digest(arrays: Mapping[str, Any]) -> str:
@@ -61,8 +67,8 @@ def digests(folder: Path) -> dict[str, str]:
             arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
             rest = {"background": fit.background, "history": np.array(fit.history)}
             found[f"{name}, {control}"] = digest(arrays | rest)
-            if name == "sparse_sh":
-                first["octree_sh"] = Model(fit.model, None, options, {}, np.zeros((0, 3)))
+            for next_one in STARTS_FROM.get(name, ()):
+                first[next_one] = Model(fit.model, None, options, {}, np.zeros((0, 3)))
     return found
 
 

@@ -90,7 +90,8 @@ def test_it_has_to_be_cut_from_voxels(grid: Model, capture: Capture) -> None:
     with pytest.raises(RangeError, match="a model of dense_grid or sparse_sh or dense_sh"):
         Fit.start(capture, scene.options(**LEAVES), start_from=model_of(leaves))
     with pytest.raises(
-        RangeError, match="none, or 'gaussians' or 'octree_sh' or 'textured_mesh' to fit"
+        RangeError,
+        match="none, or 'gaussians' or 'leaf_codes' or 'octree_sh' or 'plenoctree' or 't",
     ):
         Fit.start(capture, scene.options(**GRID), start_from=grid)
 

@@ -10,7 +10,7 @@ from photograd.errors import RangeError, ShapeError
 from photograd.fields import HashGrid, Nerf
 from photograd.fields.hash_grid import HashGridPolicy
 from photograd.fields.nerf import NerfPolicy
-from photograd.fields.neural_field import CELLS, EVERY, PARTS, UNSEEN
+from photograd.fields.neural_field import CELLS, DECAY, EVERY, PARTS, UNSEEN
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.gradcheck import check_gradient
 
@@ -182,7 +182,7 @@ def test_cells_are_marked_by_the_densities_in_them(make: Any) -> None:
     before = field.reached.copy()
     for step in range(0, EVERY * PARTS, EVERY):
         field.after_step({}, step)
-    np.testing.assert_allclose(field.reached, np.float32(0.95) * before, rtol=1e-6)
+    np.testing.assert_allclose(field.reached, np.float32(DECAY) * before, rtol=1e-6)
 
 
 def test_sizes_that_no_network_has_are_refused() -> None:

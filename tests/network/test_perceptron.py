@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.network import Perceptron
+from photograd.network import LayerValues, Perceptron
 from photograd_course.gradcheck import check_gradient, dot_product_error, taylor_slope
 
 from support.bits import same_bits
@@ -111,7 +111,7 @@ WIDE = {
     "odd": Perceptron(63, [100, 37, 5], hidden="softplus", output="exp"),
     "256 with skip": Perceptron(63, [256, 256, 256, 4], skip=2),
 }
-KERNELS = ("perceptron_forward", "perceptron_backward")
+KERNELS = ("perceptron_pack", "perceptron_forward", "perceptron_backward")
 
 
 def both(network: Perceptron, count: int, *, fused: bool) -> list[Any]:
@@ -126,6 +126,24 @@ def test_kernel_and_plain_form_agree_bit_for_bit(network: Perceptron) -> None:
         kernel, plain = both(network, count, fused=True), both(network, count, fused=False)
         for got, expected in zip(kernel, plain, strict=True):
             np.testing.assert_array_equal(got, expected)
+
+
+def test_kept_values_change_no_bit_and_belong_to_their_inputs() -> None:
+    network = WIDE["256 with skip"]
+    values = LayerValues()
+    for count in (1500, 700):  # room is used again
+        parameters, x, d = numbers(network, count, np.float32)
+        y = network.forward(parameters, x, values=values)
+        np.testing.assert_array_equal(y, network.forward(parameters, x))
+        kept = network.backward(parameters, x, d, values=values)
+        for got, expected in zip(kept, network.backward(parameters, x, d), strict=True):
+            np.testing.assert_array_equal(got, expected)
+    with pytest.raises(RangeError, match=r"Perceptron.backward: values.*700"):
+        network.backward(parameters, x[1:], d[1:], values=values)
+    with pytest.raises(RangeError, match=r"Perceptron.backward: values"):
+        network.backward(parameters, x, d, values=LayerValues())
+    with pytest.raises(RangeError, match=r"Perceptron.forward: values"):
+        network.forward(parameters, x, fused=False, values=values)
 
 
 @same_bits("perceptron", each=WIDE, kernels=KERNELS)

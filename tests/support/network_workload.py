@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 from photograd.fields import HashGrid, Nerf
-from photograd.network import FrequencyEncoding, HashEncoding, OneBlobEncoding, Perceptron
+from photograd.network import (
+    FrequencyEncoding,
+    HashEncoding,
+    LayerValues,
+    OneBlobEncoding,
+    Perceptron,
+)
 
 G = np.random.default_rng(2)
 
@@ -21,6 +27,9 @@ def networks() -> None:
             parameters = network.initial(seed=1, dtype=dtype)
             outputs = network.forward(parameters, points, fused=fused)
             network.backward(parameters, points, outputs, fused=fused)
+        if dtype == np.float32:
+            network.forward(parameters, points, values=(values := LayerValues()))
+            network.backward(parameters, points, outputs, values=values)
         for dimensions in (2, 3):
             hashed = HashEncoding([2, 9], dimensions=dimensions, log2_rows=5)
             table, p = hashed.initial(seed=1, dtype=dtype), points[:, :dimensions].copy()

@@ -13,10 +13,20 @@ def walk(n, *axes):
     return Items(Array((n + 1, *axes)), Array((n + 1,)), Truth(), names=names)
 
 
+def derivative(t, f, x, eps):
+    """`numeric_derivative` of f at x (N,): an array (N,)."""
+    return t.call("numeric_derivative", f, x, eps, returns=Array((len(x),)))
+
+
 def on_points(count, f, grad):
     """f and its gradient, which take nothing but arrays of shape (count,)."""
     spec = Array((count,), finite=False)
     return asks(f, spec, name="f"), asks(grad, spec, name="grad")
+
+
+def parabola(curvature, center):
+    """f and its derivative, of one variable."""
+    return lambda x: 0.5 * curvature * (x - center) ** 2, lambda x: curvature * (x - center)
 
 
 def rotated_bowl(rng, curvatures):

@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import checks_for
 
-from .common import EXACT, walk
+from .common import EXACT, parabola, walk
 
 check = checks_for(calls=("gd_1d",))
 
@@ -20,15 +20,8 @@ def a_parabola_contracts_by_one_factor(t):
     curvature, center = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(-2.0, 2.0))
     for reach in (0.3, 1.6):
         x0, n = center + float(t.rng.uniform(0.5, 0.9)), 12
-        x, loss, wrong = t.call(
-            "gd_1d",
-            lambda y: 0.5 * curvature * (y - center) ** 2,
-            lambda y: curvature * (y - center),
-            x0,
-            reach / curvature,
-            n,
-            returns=walk(n),
-        )
+        f, df = parabola(curvature, center)
+        x, loss, wrong = t.call("gd_1d", f, df, x0, reach / curvature, n, returns=walk(n))
         distance = (x0 - center) * (1.0 - reach) ** np.arange(n + 1)
         t.close("the points", x, center + distance)
         t.close("the values", loss, 0.5 * curvature * (np.asarray(x) - center) ** 2)
@@ -45,16 +38,10 @@ def the_verdict_changes_at_the_bound(t):
     """Just below tau = 2 / lambda the run converges, just above it diverges and says so."""
     curvature, center = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(3.0, 5.0))
 
+    f, df = parabola(curvature, center)
+
     def go(reach, x0, n=30):
-        return t.call(
-            "gd_1d",
-            lambda y: 0.5 * curvature * (y - center) ** 2,
-            lambda y: curvature * (y - center),
-            x0,
-            reach / curvature,
-            n,
-            returns=walk(n),
-        )
+        return t.call("gd_1d", f, df, x0, reach / curvature, n, returns=walk(n))
 
     for x0 in (center - 0.5, center + 0.5):
         x, _, wrong = go(1.99, x0)

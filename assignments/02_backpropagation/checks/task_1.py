@@ -2,7 +2,7 @@
 
 from photograd_course.grading import checks_for
 
-from .common import EXACT, SLOPES, away, gates_spec, require_slopes
+from .common import EXACT, away, gate, gates, require_slopes
 
 check = checks_for(calls=("Value.__add__", "Value.__mul__"))
 
@@ -17,7 +17,7 @@ def sums_and_products_have_their_value(t):
     """Sums and products have the right value, with a plain number on either side too."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 0.5, 3.0, 6)
     for op, right in (("add", a + b), ("radd", a + b), ("mul", a * b), ("rmul", a * b)):
-        found = t.call("adapters.gates", op, a, b, returns=gates_spec(6))
+        found = gates(t, op, a, b)
         t.close(f"values of {op}", found["values"], right, reveal=True)
 
 
@@ -38,7 +38,7 @@ def slopes_of_sums_and_products(t):
 def the_same_value_twice(t):
     """For x + x the local derivatives sum to 2, for x * x to 2 x."""
     x = float(t.rng.uniform(1.5, 3.0))
-    found = t.call("adapters.gate", "add", x, None, True, returns=SLOPES)
+    found = gate(t, "add", x, same=True)
     t.close("local derivative of x + x", found["slopes"].sum(), 2.0, reveal=True)
-    found = t.call("adapters.gate", "mul", x, None, True, returns=SLOPES)
+    found = gate(t, "mul", x, same=True)
     t.close("local derivative of x * x", found["slopes"].sum(), 2 * x, reveal=True)

@@ -46,9 +46,9 @@ def right_gradients_are_accepted(t):
         calls = len(asked) // 2
         same = np.array_equal(asked[:calls], asked[calls:])
         t.require(same, "grad_check has changed the x that it was given", hint=COPIES)
-        numbers = "1 number" if n == 1 else f"{n} numbers"
+        entries = "1 entry" if n == 1 else f"{n} entries"
         t.close(
-            f"error of a right gradient by {numbers}",
+            f"error of a right gradient of {entries}",
             errors[0],
             0.0,
             ACCEPTED,

@@ -1,10 +1,10 @@
 """Task 03.3, public checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
+from photograd_course.grading import Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import agrees_with_finite_differences
 
-from .common import EXACT
+from .common import EXACT, loss_and_grad
 
 check = checks_for(calls=("loss_and_grad",))
 
@@ -25,9 +25,8 @@ def the_loss_of_a_constant(t):
     """Constant texture, constant measurements: the loss is the squared distance of two colors."""
     is_, should = t.rng.uniform(0.0, 1.0, (2, 3))
     uv = t.rng.uniform(0.0, 1.0, (17, 2))
-    result = Items(Number(), Array((4, 2, 3)), names=("L", "d_T"))
     T, target = np.tile(is_, (4, 2, 1)), np.tile(should, (17, 1))
-    loss, _ = t.call("loss_and_grad", T, uv, target, returns=result)
+    loss, _ = loss_and_grad(t, T, uv, target)
     t.close("L", loss, np.sum((is_ - should) ** 2), reveal=True)
 
 
@@ -43,10 +42,9 @@ def the_gradient_agrees_with_differences(t):
     """Raising one texel by a little changes your loss by as much as your gradient says."""
     T = t.rng.uniform(0.0, 1.0, (3, 4, 2))
     uv, target = t.rng.uniform(0.0, 1.0, (30, 2)), t.rng.uniform(0.0, 1.0, (30, 2))
-    result = Items(Number(), Array((3, 4, 2)), names=("L", "d_T"))
-    _, d_T = t.call("loss_and_grad", T, uv, target, returns=result)
+    _, d_T = loss_and_grad(t, T, uv, target)
 
     def forward(point):
-        return t.call("loss_and_grad", point["T"], uv, target, returns=result)[0]
+        return loss_and_grad(t, point["T"], uv, target)[0]
 
     agrees_with_finite_differences(t, {"T": d_T}, forward, {"T": T}, np.ones(()), QUADRATIC)

@@ -1,10 +1,10 @@
 """Task 03.5, public checks."""
 
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, agree, checks_for
+from photograd_course.grading import Array, CheckFailed, Items, Tolerance, agree, checks_for
 from photograd_course.grading.adjoint_gate import matrix_of
 
-from .common import CHAINED
+from .common import CHAINED, loss_and_grad, sample
 
 FIRST_STEP = Tolerance(
     1e-3, "40 iterations on gathered samples leave 1e-15, the nearest wrong one (step_whole) 0.053"
@@ -45,9 +45,8 @@ def the_first_step(t):
     uv, T0 = t.rng.uniform(0.0, 1.0, (150, 2)) ** 2, t.rng.uniform(0.0, 1.0, shape)
     target = t.rng.uniform(0.0, 1.0, (150, 2))
     T, losses, _ = recover(t, T0, uv, target, 1)
-    result = Items(Number(), Array(shape), names=("L", "d_T"))
-    before, d_T = t.call("loss_and_grad", T0, uv, target, returns=result)
-    after, _ = t.call("loss_and_grad", T, uv, target, returns=result)
+    before, d_T = loss_and_grad(t, T0, uv, target)
+    after, _ = loss_and_grad(t, T, uv, target)
     curvature = np.linalg.norm(matrix_of(t, "bilinear_sample", shape[:2], uv), 2) ** 2 * 2 / 150
     t.close("step times gradient", T0 - T, 0.95 * 2 / curvature * d_T)
     t.close("losses", losses, [before, after], CHAINED)
@@ -101,7 +100,7 @@ def unseen_texels_stay(t):
     """Texels without any sample keep their value to the last bit, and are reported."""
     shape = (6, 5, 2)
     uv, T0 = t.rng.uniform(0.0, 0.55, (40, 2)), t.rng.uniform(0.0, 1.0, shape)
-    fits = t.call("bilinear_sample", T0, uv, returns=Array((40, 2)))
+    fits = sample(t, T0, uv)
     nowhere = ~matrix_of(t, "bilinear_sample", shape[:2], uv).any(axis=0).reshape(shape[:2])
     for target in (t.rng.uniform(0.0, 1.0, (40, 2)), fits):
         T, _, unseen = recover(t, T0, uv, target, 3)

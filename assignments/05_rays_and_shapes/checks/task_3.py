@@ -67,14 +67,14 @@ def snells_law(t):
     hint="paths of light are reversible: from inside the ratio is 1 / eta",
     sole="light goes back the way it came",
 )
-def light_goes_back(t):
-    """What leaves the other way round arrives where it came from."""
+def refraction_is_reversible(t):
+    """The reversed refracted ray is refracted into the reversed incident ray."""
     for eta in (1.33, 2.4):
         d, n = arrivals(t, 15)
         out, _ = refracted(t, d, n, eta)
         again, through = refracted(t, -out, n, eta)
-        t.require(bool(through.all()), "light does not get back out the way it came in")
-        t.close("way back", again, -d)
+        t.require(bool(through.all()), "the reversed ray must be refracted, too")
+        t.close("refracted direction of the reversed ray", again, -d)
 
 
 @check(

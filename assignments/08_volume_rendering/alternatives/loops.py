@@ -105,8 +105,8 @@ def trilinear_adjoint(shape, u, g):
 
 def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):
     u, dt = ray_samples(low, high, origins, directions, n)
-    places = u.reshape(-1, 3)
-    samples = trilinear(grid, places).reshape(len(origins), n, 4)
+    points = u.reshape(-1, 3)
+    samples = trilinear(grid, points).reshape(len(origins), n, 4)
     d_sigma, d_color, d_background = composite_adjoint(
         samples[:, :, 3], samples[:, :, :3], dt, background, d_pixel, np.zeros(len(origins))
     )
@@ -116,4 +116,4 @@ def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel)
             for c in range(3):
                 d_samples[r, k, c] = d_color[r, k, c]
             d_samples[r, k, 3] = d_sigma[r, k]
-    return trilinear_adjoint(grid.shape[:3], places, d_samples.reshape(-1, 4)), d_background
+    return trilinear_adjoint(grid.shape[:3], points, d_samples.reshape(-1, 4)), d_background

@@ -83,12 +83,12 @@ def trilinear_adjoint(shape, u, g):
 
 
 def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):
-    places, dt = ray_samples(low, high, origins, directions, n)
-    places = places.reshape(-1, 3)
-    values = trilinear(grid, places).reshape(-1, n, 4)
+    points, dt = ray_samples(low, high, origins, directions, n)
+    points = points.reshape(-1, 3)
+    values = trilinear(grid, points).reshape(-1, n, 4)
     slopes = composite_adjoint(
         values[:, :, 3], values[:, :, :3], dt, background, d_pixel, np.zeros(len(d_pixel))
     )
-    d_color = trilinear_adjoint(grid.shape[:3], places, slopes[1].reshape(-1, 3))
-    d_sigma = trilinear_adjoint(grid.shape[:3], places, slopes[0].reshape(-1, 1))
+    d_color = trilinear_adjoint(grid.shape[:3], points, slopes[1].reshape(-1, 3))
+    d_sigma = trilinear_adjoint(grid.shape[:3], points, slopes[0].reshape(-1, 1))
     return np.concatenate([d_color, d_sigma], axis=3), slopes[2]

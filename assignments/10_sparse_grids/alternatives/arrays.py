@@ -41,15 +41,15 @@ def octree_from_dense(full):
 
 def skip_empty(leaf, first, stride, count):
     # The samples of each leaf are found by asking which ones lie in its box.
-    places = first[:, None] + np.arange(count)[:, None] * stride[:, None]
+    points = first[:, None] + np.arange(count)[:, None] * stride[:, None]
     wanted = np.zeros((len(first), count), bool)
     known = np.zeros((len(first), count), bool)
     while not known.all():
         ray = np.flatnonzero(~known.all(axis=1))
         k = np.argmin(known[ray], axis=1)
-        full, low, side = leaf(places[ray, k])
+        full, low, side = leaf(points[ray, k])
         low, high = low[:, None], low[:, None] + side[:, None, None]
-        inside = ((places[ray] >= low) & (places[ray] < high)).all(axis=2)
+        inside = ((points[ray] >= low) & (points[ray] < high)).all(axis=2)
         inside[np.arange(len(ray)), k] = True
         known[ray] |= inside
         wanted[ray] |= inside & full[:, None]

@@ -13,18 +13,18 @@ def counting_leaf(full, asked, most=np.inf):
     """A service that tells the leaf of points and notes in `asked` how many there were."""
     n, side = len(full), equal_cubes(full)
 
-    def leaf(places):
-        if not (isinstance(places, np.ndarray) and places.ndim == 2 and places.shape[1] == 3):
-            raise CheckFailed("skip_empty: leaf wants places, an array of shape (M, 3)")
-        if not ((places > -1e-6) & (places < n + 1e-6)).all():
+    def leaf(points):
+        if not (isinstance(points, np.ndarray) and points.ndim == 2 and points.shape[1] == 3):
+            raise CheckFailed("skip_empty: leaf wants points: an array of shape (M, 3)")
+        if not ((points > -1e-6) & (points < n + 1e-6)).all():
             raise CheckFailed("skip_empty: a point that was looked up lies outside of the cube")
-        asked.append(len(places))
+        asked.append(len(points))
         if sum(asked) > most:
             raise CheckFailed(
                 "skip_empty: asks without end; a ray stands still",
                 {"advice": "a ray stands still: on a face m is 0, see the 1 in equation (8)"},
             )
-        cell = np.clip(np.floor(places), 0, n - 1).astype(np.int64)
+        cell = np.clip(np.floor(points), 0, n - 1).astype(np.int64)
         size = side[tuple(cell.T)]
         low = cell // size[:, None] * size[:, None]
         return full[tuple(cell.T)], low.astype(float), size.astype(float)

@@ -1,5 +1,7 @@
 """Task 10.6, public checks."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
 from photograd_course.grading.failures import CheckFailed, StudentFailure
@@ -12,19 +14,24 @@ STEPS = (*EARLIER, "sample_sparse_adjoint")
 check = checks_for(calls=("fit_sparse",), needs=STEPS)
 
 
+@dataclass(frozen=True)
+class Fit:
+    """Result of `fit_sparse` after so many steps; its voxels cannot be counted beforehand."""
+
+    steps: int
+
+    def require(self, value, where):
+        """Raise CheckFailed unless `value` is one."""
+        if not isinstance(value, list) or len(value) != 3:
+            raise CheckFailed(f"{where}: expected a tuple of 3: voxels, values, losses")
+        Array((None, 3), "i8").require(value[0], f"{where}, voxels")
+        Array((len(value[0]), 4)).require(value[1], f"{where}, values")
+        Array((self.steps,)).require(value[2], f"{where}, losses")
+
+
 def fitted(t, *given, function="fit_sparse"):
-    """`fit_sparse`, whose voxels cannot be counted beforehand; the parts are looked at."""
-    rounds, steps = given[5], given[6]
-
-    class Fit:
-        def require(self, value, where):
-            if not isinstance(value, list) or len(value) != 3:
-                raise CheckFailed(f"{where}: expected a tuple of 3: voxels, values, losses")
-            Array((None, 3), "i8").require(value[0], f"{where}, voxels")
-            Array((len(value[0]), 4)).require(value[1], f"{where}, values")
-            Array((rounds * steps,)).require(value[2], f"{where}, losses")
-
-    return t.call(function, *given, returns=Fit())
+    """`fit_sparse` of n, voxels, values, rays, target, rounds, steps and more."""
+    return t.call(function, *given, returns=Fit(given[5] * given[6]))
 
 
 def small_case(t, n=8, views=3, size=5):

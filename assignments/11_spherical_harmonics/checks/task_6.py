@@ -16,18 +16,18 @@ def photographs(rng, views, pixels, away=3.2, view_angle=0.75):
     height = 1 - (np.arange(views) + 0.5) * 2 / views
     phi = np.arange(views) * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - height**2)
-    places = np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1) @ random_rotation(
-        rng
-    )
+    positions = np.stack(
+        [ring * np.cos(phi), ring * np.sin(phi), height], axis=1
+    ) @ random_rotation(rng)
     tangent = ((np.arange(pixels) + 0.5) / pixels * 2 - 1) * np.tan(view_angle / 2)
     origins, directions = [], []
-    for place in places:
-        right = np.cross(place, unit_vectors(rng, 1)[0])
+    for position in positions:
+        right = np.cross(position, unit_vectors(rng, 1)[0])
         right /= np.linalg.norm(right)
-        down = np.cross(place, right)
-        d = -place + (tangent[:, None, None] * down + tangent[None, :, None] * right)
+        down = np.cross(position, right)
+        d = -position + (tangent[:, None, None] * down + tangent[None, :, None] * right)
         directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
-        origins.append(np.tile(away * place, (pixels**2, 1)))
+        origins.append(np.tile(away * position, (pixels**2, 1)))
     return np.stack([np.concatenate(origins), np.concatenate(directions)])
 
 

@@ -136,13 +136,13 @@ def alpha_agrees_with_differences(t):
 
 
 @check(
-    "15.3.pull",
+    "15.3.absgrad",
     points=2,
     adjoints=("screen_alpha",),
     hint="handout, equation (21): absolute values first, then the sum over pixels",
-    sole="tests pull only",
+    sole="tests absgrad only",
 )
-def pull_does_not_cancel(t):
+def absgrad_does_not_cancel(t):
     """absgrad is the sum over pixels of the size of what each alone adds to d_mean2d."""
     m, s, o, pixels = wide_splats(t.rng, 3, 5)
     g = random_cotangent(t.rng, (3, 5))

@@ -116,7 +116,8 @@ struct NeuralField {
         struct Chunk {
             typename Network<R>::Gradient density, color;
             std::vector<double> d_density, d_color;
-            std::vector<R> points, d_encoded;  // (n, 3), (n, encoded), for a hash encoding
+            std::vector<int> counts;           // of the blocks that a hash encoding records
+            std::vector<R> points, d_encoded;  // (blocks, 128, 3), (blocks, encoded, 128)
         };
         const NeuralField* field;
         R *table, *density, *color;
@@ -129,6 +130,7 @@ struct NeuralField {
                 field->color.resize(chunk.color);
                 chunk.d_density.assign(field->density.shape().parameters(), 0.0);
                 chunk.d_color.assign(field->color.shape().parameters(), 0.0);
+                chunk.counts.clear();
                 chunk.points.clear();
                 chunk.d_encoded.clear();
             }
@@ -139,16 +141,25 @@ struct NeuralField {
             for (std::size_t p = 0; p < field->color.shape().parameters(); ++p)
                 color[p] += total(&Chunk::d_color, p);
             if (!field->hash) return;
-            const auto levels = static_cast<std::int64_t>(field->hash->levels().size());
-            parallel_for(levels, [&](std::int64_t level) {
+            const std::vector<HashPart> parts = hash_parts(field->hash->levels());
+            parallel_for(static_cast<std::int64_t>(parts.size()), [&](std::int64_t p) {
                 for (const Chunk& chunk : chunks)
-                    field->hash->scatter(static_cast<std::size_t>(level), chunk.points.data(),
-                                         static_cast<std::int64_t>(chunk.points.size() / 3),
-                                         {field->encoded(), 1}, chunk.d_encoded.data(), table);
+                    scatter(chunk, parts[static_cast<std::size_t>(p)]);
             });
         }
 
     private:
+        void scatter(const Chunk& chunk, const HashPart& part) const {
+            const std::size_t width = static_cast<std::size_t>(field->encoded());
+            const R* points = chunk.points.data();
+            const R* d_encoded = chunk.d_encoded.data() + field->level_offset(part.level);
+            for (const int count : chunk.counts) {
+                field->hash->scatter(part.level, points, count, perceptron_block, d_encoded, table,
+                                     part.first, part.last);
+                points += 3 * perceptron_block;
+                d_encoded += width * perceptron_block;
+            }
+        }
         [[nodiscard]] R total(std::vector<double> Chunk::* of, std::size_t p) const {
             double sum = 0.0;
             for (const Chunk& chunk : chunks) sum += (chunk.*of)[p];
@@ -217,7 +228,7 @@ private:
             std::fill(out + f * perceptron_block + count, out + (f + 1) * perceptron_block, R(0));
         if (hash)
             for (std::size_t l = 0; l < hash->levels().size(); ++l)
-                hash->encode(l, table, unit, 0, count, {1, perceptron_block}, out);
+                hash->encode(l, table, unit, 0, count, perceptron_block, out + level_offset(l));
         else
             for (int i = 0; i < count; ++i) {
                 const R p[3] = {centered(unit[3 * i]), centered(unit[3 * i + 1]),
@@ -281,8 +292,9 @@ private:
                            std::vector<Lanes<R>>* d_position) const {
         std::array<R, 3 * perceptron_block> d_unit{};
         if (hash)
-            hash->backward_points(table, block.unit.data(), 0, block.count, {1, perceptron_block},
-                                  d_encoded, d_unit.data());
+            for (std::size_t l = 0; l < hash->levels().size(); ++l)
+                hash->backward_points(l, table, block.unit.data(), 0, block.count, perceptron_block,
+                                      d_encoded + level_offset(l), d_unit.data());
         for (int i = 0; i < block.count; ++i) {
             const auto n = static_cast<std::size_t>(i);
             R* d = d_unit.data() + 3 * n;
@@ -298,14 +310,14 @@ private:
         }
     }
     void record(const Block& block, const R* d_encoded, typename Sink::Chunk& own) const {
-        own.points.insert(own.points.end(), block.unit.begin(),
-                          block.unit.begin() + 3 * block.count);
-        const std::size_t width = static_cast<std::size_t>(encoded()), first = own.d_encoded.size();
-        own.d_encoded.resize(first + width * static_cast<std::size_t>(block.count));
-        for (int i = 0; i < block.count; ++i)
-            for (std::size_t f = 0; f < width; ++f)
-                own.d_encoded[first + static_cast<std::size_t>(i) * width + f] =
-                    d_encoded[f * perceptron_block + static_cast<std::size_t>(i)];
+        own.counts.push_back(block.count);
+        own.points.insert(own.points.end(), block.unit.begin(), block.unit.end());
+        own.d_encoded.insert(own.d_encoded.end(), d_encoded,
+                             d_encoded + encoded() * perceptron_block);
+    }
+    /// Where the features of a level begin in a block.
+    [[nodiscard]] std::size_t level_offset(std::size_t level) const {
+        return level * static_cast<std::size_t>(hash->features() * perceptron_block);
     }
 };
 

@@ -40,13 +40,22 @@ struct Chunks {
     }
 };
 
+// Where the numbers of the block that begins with sample `first` are kept, or `own`.
+template <class Values>
+Values& values_of(PerceptronValues* kept, std::int64_t first, Values& own) {
+    if constexpr (std::is_same_v<Values, KernelNetwork::Values>)
+        if (kept) return kept->blocks[static_cast<std::size_t>(first / perceptron_block)];
+    return own;
+}
+
 template <class Engine, class R = typename Engine::Scalar>
 void forward_chunk(const Engine& network, std::int64_t begin, std::int64_t end, const R* inputs,
-                   R* outputs) {
+                   R* outputs, PerceptronValues* kept) {
     const int takes = network.shape().inputs, gives = network.shape().outputs();
-    typename Engine::Values values;
-    network.resize(values);
+    typename Engine::Values own;
     for_pieces(begin, end, perceptron_block, [&](std::int64_t first, std::int64_t n) {
+        auto& values = values_of(kept, first, own);
+        network.resize(values);
         to_block(inputs + first * takes, n, takes, values.inputs());
         network.forward(values, static_cast<int>(n));
         from_block(values.outputs(), n, gives, outputs + first * gives);
@@ -55,18 +64,22 @@ void forward_chunk(const Engine& network, std::int64_t begin, std::int64_t end, 
 
 template <class Engine, class R = typename Engine::Scalar>
 void backward_chunk(const Engine& network, std::int64_t begin, std::int64_t end, const R* inputs,
-                    const R* d_outputs, std::span<double> sums, R* d_inputs) {
+                    const R* d_outputs, std::span<double> sums, R* d_inputs,
+                    PerceptronValues* kept) {
     const int takes = network.shape().inputs, gives = network.shape().outputs();
-    typename Engine::Values values;
+    typename Engine::Values own;
     typename Engine::Gradient gradient;
-    network.resize(values);
     network.resize(gradient);
     std::vector<R> d_out(static_cast<std::size_t>(gives * perceptron_block)),
         d_in(static_cast<std::size_t>(takes * perceptron_block));
     for_pieces(begin, end, run, [&](std::int64_t from, std::int64_t count) {
         for_pieces(from, from + count, perceptron_block, [&](std::int64_t first, std::int64_t n) {
-            to_block(inputs + first * takes, n, takes, values.inputs());
-            network.forward(values, static_cast<int>(n));
+            auto& values = values_of(kept, first, own);
+            if (!kept) {
+                network.resize(values);
+                to_block(inputs + first * takes, n, takes, values.inputs());
+                network.forward(values, static_cast<int>(n));
+            }
             to_block(d_outputs + first * gives, n, gives, d_out.data());
             network.backward(values, static_cast<int>(n), d_out.data(), gradient,
                              d_inputs ? d_in.data() : nullptr);
@@ -89,10 +102,17 @@ void with_engine(const PerceptronShape& shape, const R* parameters, bool plain, 
 
 template <class R>
 void perceptron_forward(const PerceptronShape& shape, const R* parameters, std::int64_t samples,
-                        const R* inputs, R* outputs, bool plain) {
+                        const R* inputs, R* outputs, bool plain, PerceptronValues* values) {
+    if (values) {
+        const std::int64_t blocks = (samples + perceptron_block - 1) / perceptron_block;
+        values->blocks.resize(static_cast<std::size_t>(blocks));
+        values->samples = samples;
+        values->parameters = shape.parameters();
+    }
     with_engine(shape, parameters, plain, [&](const auto& network) {
         parallel_for((samples + run - 1) / run, [&](std::int64_t k) {
-            forward_chunk(network, k * run, std::min((k + 1) * run, samples), inputs, outputs);
+            forward_chunk(network, k * run, std::min((k + 1) * run, samples), inputs, outputs,
+                          values);
         });
     });
 }
@@ -100,25 +120,26 @@ void perceptron_forward(const PerceptronShape& shape, const R* parameters, std::
 template <class R>
 void perceptron_backward(const PerceptronShape& shape, const R* parameters, std::int64_t samples,
                          const R* inputs, const R* d_outputs, R* d_parameters, R* d_inputs,
-                         bool plain) {
+                         bool plain, PerceptronValues* values) {
     const Chunks chunks(samples);
     with_engine(shape, parameters, plain, [&](const auto& network) {
         sum_partials<R>(chunks.count, {d_parameters, shape.parameters()},
                         [&](std::int64_t k, std::span<double> sums) {
                             backward_chunk(network, k * chunks.size,
                                            std::min((k + 1) * chunks.size, samples), inputs,
-                                           d_outputs, sums, d_inputs);
+                                           d_outputs, sums, d_inputs, values);
                         });
     });
 }
 
 template void perceptron_forward(const PerceptronShape&, const float*, std::int64_t, const float*,
-                                 float*, bool);
+                                 float*, bool, PerceptronValues*);
 template void perceptron_forward(const PerceptronShape&, const double*, std::int64_t, const double*,
-                                 double*, bool);
+                                 double*, bool, PerceptronValues*);
 template void perceptron_backward(const PerceptronShape&, const float*, std::int64_t, const float*,
-                                  const float*, float*, float*, bool);
+                                  const float*, float*, float*, bool, PerceptronValues*);
 template void perceptron_backward(const PerceptronShape&, const double*, std::int64_t,
-                                  const double*, const double*, double*, double*, bool);
+                                  const double*, const double*, double*, double*, bool,
+                                  PerceptronValues*);
 
 }  // namespace photograd

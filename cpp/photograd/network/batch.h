@@ -7,20 +7,32 @@
 
 #include <cstdint>
 
+#include "photograd/network/engine.h"
 #include "photograd/network/shape.h"
 
 namespace photograd {
 
+/// The numbers of all layers at all inputs, which a forward pass of the kernel leaves for the
+/// backward pass at the same inputs and parameters. Without them that one evaluates the layers
+/// again.
+struct PerceptronValues {
+    std::vector<KernelNetwork::Values> blocks;
+    std::int64_t samples = 0;
+    std::size_t parameters = 0;  // of the shape that they belong to
+};
+
 /// Writes outputs (samples, shape.outputs()) of inputs (samples, shape.inputs). R: float, double.
 /// `plain` takes the formulas of network/perceptron.h in float, too, in place of the kernel.
+/// Fills `values` unless null, which the plain formulas and double ask for.
 template <class R>
 void perceptron_forward(const PerceptronShape& shape, const R* parameters, std::int64_t samples,
-                        const R* inputs, R* outputs, bool plain = false);
+                        const R* inputs, R* outputs, bool plain = false,
+                        PerceptronValues* values = nullptr);
 
 /// Adds to d_parameters (shape.parameters()); writes d_inputs (samples, shape.inputs) unless null.
 template <class R>
 void perceptron_backward(const PerceptronShape& shape, const R* parameters, std::int64_t samples,
                          const R* inputs, const R* d_outputs, R* d_parameters, R* d_inputs,
-                         bool plain = false);
+                         bool plain = false, PerceptronValues* values = nullptr);
 
 }  // namespace photograd

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -32,7 +33,8 @@ public:
             const std::int64_t input = l == 0 ? 0 : layers_.back().output;
             const bool again = l > 0 && l == shape.skip;
             const int activation = static_cast<int>(shape.activation(l));
-            layers_.push_back({takes, gives, activation, again, W, b, input, at, derivatives_});
+            layers_.push_back(
+                {takes, gives, activation, again, W, b, nullptr, nullptr, input, at, derivatives_});
             // Room behind the output for the input, where the next layer takes it again.
             const int behind = l + 1 == shape.skip ? shape.inputs : 0;
             at += std::int64_t{gives + behind} * perceptron_block;
@@ -40,6 +42,7 @@ public:
             widest_ = std::max({widest_, takes, gives});
         }
         workspace_ = at;
+        pack();
     }
 
     /// Inputs, to be written, and outputs of a block; backward takes what forward left there.
@@ -93,6 +96,21 @@ public:
     [[nodiscard]] const PerceptronShape& shape() const { return *shape_; }
 
 private:
+    void pack() {
+        std::size_t weights = 0;
+        for (const PerceptronLayer& layer : layers_)
+            weights +=
+                static_cast<std::size_t>(layer.gives) * static_cast<std::size_t>(layer.takes);
+        packed_ = std::make_unique_for_overwrite<float[]>(2 * weights);
+        float* to = packed_.get();
+        for (PerceptronLayer& layer : layers_) {
+            const std::int64_t size = std::int64_t{layer.gives} * layer.takes;
+            layer.packed = to;
+            layer.packed_transposed = to + size;
+            kernels().perceptron_pack(layer, to, to + size);
+            to += 2 * size;
+        }
+    }
     // The backward kernel reads the workspace only.
     PerceptronBlock block(const Values& v, int samples) const {
         return {layers_.data(), shape_->layers(), shape_->inputs, samples,
@@ -101,6 +119,7 @@ private:
 
     const PerceptronShape* shape_;
     std::vector<PerceptronLayer> layers_;
+    std::unique_ptr<float[]> packed_;  // the weights of all layers, in both orders
     std::int64_t workspace_ = 0, derivatives_ = 0;
     int widest_ = 0;
 };

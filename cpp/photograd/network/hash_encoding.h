@@ -12,17 +12,24 @@
 //
 // Adjoint: d_table[row of corner] += weight d_feature; d_p_a = N_l sum over corners of
 // (dw_a / df_a) prod_{b != a} w_b  <features of corner, d_features>.
+//
+// In float the kernels of kernels/hash_encoding.inl do this for many points at once. Every sum runs
+// in the order given here, corner by corner and point by point: the two agree bit for bit.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "kernels/kernels.h"
 #include "photograd/core/parallel.h"
 #include "photograd/core/real.h"
+#include "photograd/ops/hash_cell.h"
 
 namespace photograd {
 
@@ -30,11 +37,10 @@ struct HashLevel {
     std::int32_t resolution;   // cells along an axis
     std::int64_t first, rows;  // of the table of all levels
     bool dense;
-};
 
-/// Where a level's features are written: feature f of sample s at [s * sample + f * feature].
-struct FeatureStride {
-    std::int64_t sample, feature;
+    [[nodiscard]] std::uint32_t mask() const {
+        return dense ? 0 : static_cast<std::uint32_t>(rows - 1);
+    }
 };
 
 template <Real R, int D>
@@ -75,99 +81,85 @@ public:
 
     /// p in the unit cube; a point outside belongs to the border of the outermost cells.
     [[nodiscard]] Corners corners(const HashLevel& level, const R* p) const {
-        constexpr std::uint32_t prime[3] = {1u, 2654435761u, 805459861u};
         Corners c;
-        c.mask = level.dense ? 0 : static_cast<std::uint32_t>(level.rows - 1);
-        const R n = static_cast<R>(level.resolution);
-        std::uint32_t stride = 1;
+        c.mask = level.mask();
         for (std::size_t a = 0; a < D; ++a) {
-            const R inside = std::min(std::max(p[a], R(0)), R(1)), at = inside * n;
-            const auto cell = std::min(static_cast<std::int32_t>(at), level.resolution - 1);
-            const R f = at - static_cast<R>(cell), rate = inside == p[a] ? n : R(0);
-            const R w = smoothstep_ ? f * f * (R(3) - R(2) * f) : f;
-            const R dw = rate * (smoothstep_ ? R(6) * f * (R(1) - f) : R(1));
-            c.weight[a] = {R(1) - w, w};
-            c.slope[a] = {-dw, dw};
-            const std::uint32_t low = static_cast<std::uint32_t>(cell),
-                                factor = level.dense ? stride : prime[a];
-            c.part[a] = {low * factor, (low + 1) * factor};
-            stride *= static_cast<std::uint32_t>(level.resolution + 1);
+            const HashAxis<R> at = hash_axis(p[a], level.resolution, smoothstep_);
+            c.weight[a] = {R(1) - at.weight, at.weight};
+            c.slope[a] = {-at.slope, at.slope};
+            const std::uint32_t factor =
+                hash_factor(static_cast<int>(a), level.resolution, level.dense);
+            c.part[a][0] = static_cast<std::uint32_t>(at.cell) * factor;
+            c.part[a][1] = c.part[a][0] + factor;
         }
         return c;
     }
 
-    /// Features of samples [begin, end) of one level, behind those of the levels before it.
+    /// Writes feature f of level l at sample s of [begin, end) to out[f * stride + s].
     void encode(std::size_t l, const R* table, const R* points, std::int64_t begin,
-                std::int64_t end, FeatureStride stride, R* out) const {
-        const HashLevel& level = levels_[l];
-        const R* rows = table + features_ * level.first;
-        out += std::int64_t(l) * features_ * stride.feature;
-        with_features([&](auto features) {
-            for (std::int64_t s = begin; s < end; ++s) {
-                const Corners c = corners(level, points + D * s);
-                R sum[max_features] = {};
-                for (int k = 0; k < 1 << D; ++k) {
-                    const R w = c.product(k);
-                    const R* from = rows + features * c.row(k);
-                    for (int f = 0; f < features; ++f) sum[f] += w * from[f];
-                }
-                for (int f = 0; f < features; ++f)
-                    out[s * stride.sample + f * stride.feature] = sum[f];
+                std::int64_t end, std::int64_t stride, R* out) const {
+        const R* rows = table + features_ * levels_[l].first;
+        if constexpr (std::is_same_v<R, float>)
+            return kernels().hash_encode({level_args(l, points), rows, out, stride}, begin, end);
+        for (std::int64_t s = begin; s < end; ++s) {
+            const Corners c = corners(levels_[l], points + D * s);
+            for (int f = 0; f < features_; ++f) {
+                R sum = c.product(0) * rows[features_ * c.row(0) + f];
+                for (int k = 1; k < 1 << D; ++k)
+                    sum += c.product(k) * rows[features_ * c.row(k) + f];
+                out[f * stride + s] = sum;
             }
-        });
+        }
     }
 
-    /// Adds to d_table the derivatives of all samples of one level, in their order.
-    void scatter(std::size_t l, const R* points, std::int64_t samples, FeatureStride stride,
-                 const R* d_out, R* d_table) const {
-        const HashLevel& level = levels_[l];
-        R* rows = d_table + features_ * level.first;
-        d_out += std::int64_t(l) * features_ * stride.feature;
-        with_features([&](auto features) {
-            for (std::int64_t s = 0; s < samples; ++s) {
-                const Corners c = corners(level, points + D * s);
-                R d[max_features];
-                for (int f = 0; f < features; ++f)
-                    d[f] = d_out[s * stride.sample + f * stride.feature];
-                for (int k = 0; k < 1 << D; ++k) {
-                    const R w = c.product(k);
-                    R* to = rows + features * c.row(k);
-                    for (int f = 0; f < features; ++f) to[f] += w * d[f];
-                }
+    /// Adds to the rows of level l that are numbers [first, last) of it the derivatives of samples
+    /// [0, samples), in their order; d_out as encode's out.
+    void scatter(std::size_t l, const R* points, std::int64_t samples, std::int64_t stride,
+                 const R* d_out, R* d_table, std::int64_t first, std::int64_t last) const {
+        R* rows = d_table + features_ * levels_[l].first;
+        if constexpr (std::is_same_v<R, float>)
+            return kernels().hash_scatter(
+                {level_args(l, points), d_out, stride, rows, static_cast<std::uint32_t>(first),
+                 static_cast<std::uint32_t>(last)},
+                0, samples);
+        for (std::int64_t s = 0; s < samples; ++s) {
+            const Corners c = corners(levels_[l], points + D * s);
+            for (int k = 0; k < 1 << D; ++k) {
+                const std::int64_t row = c.row(k);
+                if (row < first || row >= last) continue;
+                for (int f = 0; f < features_; ++f)
+                    rows[features_ * row + f] += c.product(k) * d_out[f * stride + s];
             }
-        });
+        }
     }
 
-    /// Adds to d_points (samples, D) of samples [begin, end), for all levels.
-    void backward_points(const R* table, const R* points, std::int64_t begin, std::int64_t end,
-                         FeatureStride stride, const R* d_out, R* d_points) const {
-        for (std::int64_t s = begin; s < end; ++s)
-            for (std::size_t l = 0; l < levels_.size(); ++l) {
-                const Corners c = corners(levels_[l], points + D * s);
-                const R* d =
-                    d_out + s * stride.sample + std::int64_t(l) * features_ * stride.feature;
-                for (int k = 0; k < 1 << D; ++k) {
-                    const R* from = table + features_ * (levels_[l].first + c.row(k));
-                    R along = R(0);
-                    for (int f = 0; f < features_; ++f) along += from[f] * d[f * stride.feature];
-                    for (std::size_t a = 0; a < D; ++a)
-                        d_points[D * s + std::int64_t(a)] += c.product_slope(k, a) * along;
-                }
+    /// Adds to d_points (samples, D) of samples [begin, end) what level l contributes.
+    void backward_points(std::size_t l, const R* table, const R* points, std::int64_t begin,
+                         std::int64_t end, std::int64_t stride, const R* d_out, R* d_points) const {
+        const R* rows = table + features_ * levels_[l].first;
+        if constexpr (std::is_same_v<R, float>)
+            return kernels().hash_points({level_args(l, points), rows, d_out, stride, d_points},
+                                         begin, end);
+        for (std::int64_t s = begin; s < end; ++s) {
+            const Corners c = corners(levels_[l], points + D * s);
+            for (int k = 0; k < 1 << D; ++k) {
+                const R* from = rows + features_ * c.row(k);
+                R along = from[0] * d_out[s];
+                for (int f = 1; f < features_; ++f) along += from[f] * d_out[f * stride + s];
+                for (std::size_t a = 0; a < D; ++a)
+                    d_points[D * s + std::int64_t(a)] += c.product_slope(k, a) * along;
             }
+        }
     }
 
     static constexpr int max_features = 8;
 
 private:
-    /// use(number of features), as a constant where it is a usual one.
-    template <class Use>
-    void with_features(Use&& use) const {
-        switch (features_) {
-            case 1: return use(std::integral_constant<int, 1>{});
-            case 2: return use(std::integral_constant<int, 2>{});
-            case 4: return use(std::integral_constant<int, 4>{});
-            default: return use(features_);
-        }
+    [[nodiscard]] HashLevelArgs level_args(std::size_t l, const float* points) const {
+        const HashLevel& level = levels_[l];
+        return {D,           features_,    level.resolution,
+                smoothstep_, level.mask(), static_cast<std::uint32_t>(level.rows),
+                points};
     }
 
     std::vector<HashLevel> levels_;
@@ -191,33 +183,101 @@ inline std::vector<HashLevel> hash_levels(std::span<const std::int32_t> resoluti
     return levels;
 }
 
+/// Rows of one task of a scatter: fewer levels than threads are cut into ranges of rows. How many
+/// there are changes no sum.
+struct HashPart {
+    std::size_t level;
+    std::int64_t first, last;
+};
+inline std::vector<HashPart> hash_parts(std::span<const HashLevel> levels) {
+    const std::int64_t count = std::int64_t(levels.size()), threads = thread_count();
+    const std::int64_t parts = count >= threads ? 1 : (2 * threads + count - 1) / count;
+    std::vector<HashPart> found;
+    // The finest level is the slowest, and comes first.
+    for (std::size_t l = levels.size(); l-- > 0;)
+        for (std::int64_t k = 0; k < parts; ++k)
+            found.push_back({l, levels[l].rows * k / parts, levels[l].rows * (k + 1) / parts});
+    return found;
+}
+
+/// Samples whose features are brought into another order at a time.
+inline constexpr std::int64_t hash_slab = 1 << 18, hash_piece = 8192;
+
+namespace detail {
+/// visit(begin, end) for pieces of [0, samples), on all threads.
+template <class Visit>
+void for_pieces(std::int64_t samples, Visit&& visit) {
+    parallel_for((samples + hash_piece - 1) / hash_piece, [&](std::int64_t k) {
+        visit(k * hash_piece, std::min((k + 1) * hash_piece, samples));
+    });
+}
+/// visit(a, b) for all entries rows[s * width + f] = a, columns[f * stride + s] = b of samples
+/// [begin, end), in tiles.
+template <class Rows, class Columns, class Visit>
+void for_transposed(Rows* rows, Columns* columns, std::int64_t width, std::int64_t stride,
+                    std::int64_t begin, std::int64_t end, Visit&& visit) {
+    constexpr std::int64_t tile = 16;
+    for (std::int64_t first = begin; first < end; first += tile)
+        for (std::int64_t f = 0; f < width; ++f)
+            for (std::int64_t s = first; s < std::min(first + tile, end); ++s)
+                visit(rows[s * width + f], columns[f * stride + s]);
+}
+}  // namespace detail
+
 /// Writes features (samples, levels F).
 template <Real R, int D>
 void hash_encode(const HashEncoding<R, D>& e, const R* table, const R* points, std::int64_t samples,
                  R* out) {
-    // Level by level, so that one table at a time is in the cache.
-    const FeatureStride stride{std::int64_t(e.levels().size()) * e.features(), 1};
-    constexpr std::int64_t piece = 8192;
-    for (std::size_t l = 0; l < e.levels().size(); ++l)
-        parallel_for((samples + piece - 1) / piece, [&](std::int64_t k) {
-            e.encode(l, table, points, k * piece, std::min((k + 1) * piece, samples), stride, out);
+    const std::int64_t width = std::int64_t(e.levels().size()) * e.features();
+    const std::int64_t stride = std::min(samples, hash_slab);
+    const auto columns =
+        std::make_unique_for_overwrite<R[]>(static_cast<std::size_t>(width * stride));
+    for (std::int64_t first = 0; first < samples; first += stride) {
+        const std::int64_t count = std::min(stride, samples - first);
+        // Level by level, so that one table at a time is in the cache.
+        for (std::size_t l = 0; l < e.levels().size(); ++l)
+            detail::for_pieces(count, [&](std::int64_t begin, std::int64_t end) {
+                e.encode(l, table, points + D * first, begin, end, stride,
+                         columns.get() + std::int64_t(l) * e.features() * stride);
+            });
+        detail::for_pieces(count, [&](std::int64_t begin, std::int64_t end) {
+            detail::for_transposed(out + width * first, columns.get(), width, stride, begin, end,
+                                   [](R& row, R column) { row = column; });
         });
+    }
 }
 
 /// Adds to d_table (rows, F), and to d_points (samples, D) unless null.
 template <Real R, int D>
 void hash_encode_backward(const HashEncoding<R, D>& e, const R* table, const R* points,
                           std::int64_t samples, const R* d_out, R* d_table, R* d_points) {
-    const FeatureStride stride{std::int64_t(e.levels().size()) * e.features(), 1};
-    parallel_for(std::int64_t(e.levels().size()), [&](std::int64_t l) {
-        e.scatter(std::size_t(l), points, samples, stride, d_out, d_table);
-    });
-    if (!d_points) return;
-    constexpr std::int64_t piece = 1024;
-    parallel_for((samples + piece - 1) / piece, [&](std::int64_t k) {
-        e.backward_points(table, points, k * piece, std::min((k + 1) * piece, samples), stride,
-                          d_out, d_points);
-    });
+    const std::int64_t width = std::int64_t(e.levels().size()) * e.features();
+    const std::int64_t stride = std::min(samples, hash_slab);
+    const auto columns =
+        std::make_unique_for_overwrite<R[]>(static_cast<std::size_t>(width * stride));
+    const std::vector<HashPart> parts = hash_parts(e.levels());
+    for (std::int64_t first = 0; first < samples; first += stride) {
+        const std::int64_t count = std::min(stride, samples - first);
+        const R* p = points + D * first;
+        const auto of_level = [&](std::size_t l) {
+            return columns.get() + std::int64_t(l) * e.features() * stride;
+        };
+        detail::for_pieces(count, [&](std::int64_t begin, std::int64_t end) {
+            detail::for_transposed(d_out + width * first, columns.get(), width, stride, begin, end,
+                                   [](R row, R& column) { column = row; });
+        });
+        parallel_for(std::int64_t(parts.size()), [&](std::int64_t k) {
+            const HashPart& part = parts[static_cast<std::size_t>(k)];
+            e.scatter(part.level, p, count, stride, of_level(part.level), d_table, part.first,
+                      part.last);
+        });
+        if (!d_points) continue;
+        detail::for_pieces(count, [&](std::int64_t begin, std::int64_t end) {
+            for (std::size_t l = 0; l < e.levels().size(); ++l)
+                e.backward_points(l, table, p, begin, end, stride, of_level(l),
+                                  d_points + D * first);
+        });
+    }
 }
 
 }  // namespace photograd

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
@@ -21,13 +21,15 @@ from photograd_course.cli import (
 
 from photograd._checkpoint import FILE_NAME
 from photograd._descend import LOSS_COLUMN, progress_bar, run_folder
-from photograd._fit_options import BACKGROUNDS, DENSITY_CONTROLS, MAX_DEGREE, FitOptions
+from photograd._fit_options import BACKGROUNDS, DECODES, DENSITY_CONTROLS, MAX_DEGREE, FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
+from photograd.commands.fit_image import fit_picture, is_picture
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
+    is_given,
     out_option,
     stop_on_signals,
     use_threads,
@@ -36,6 +38,7 @@ from photograd.errors import RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
+from photograd.fitting.freeze import learn_freeze_refine
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import (
@@ -82,7 +85,13 @@ ResolutionOption: TypeAlias = Annotated[
     ),
 ]
 RaysOption: TypeAlias = Annotated[
-    int, typer.Option("--rays", min=1, help="Rays a step; Gaussians take whole views.")
+    int | None,
+    typer.Option(
+        "--rays",
+        min=1,
+        help="Rays a step; Gaussians take whole views.",
+        show_default=_defaults("rays"),
+    ),
 ]
 LearningRateOption: TypeAlias = Annotated[
     float, typer.Option("--learning-rate", help="Factor on the built-in rates.")
@@ -115,14 +124,30 @@ GaussiansOption: TypeAlias = Annotated[
 DensityControlOption: TypeAlias = Annotated[
     str, typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}.")
 ]
+DecodeOption: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--decode",
+        help=f"Of {_users('decode')}: {' or '.join(DECODES)}, where the network is evaluated.",
+    ),
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
         "--start-from",
-        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut; or, "
-        "for a textured_mesh, a mesh file with texture coordinates: "
+        help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
+        "plenoctree tabulates, or whose voxels leaf_codes take; or, for a textured_mesh, a mesh "
+        "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
+    ),
+]
+FreezeOption: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--freeze",
+        help="Hold the structure once it is known, and report PSNR, bytes and the time of a frame "
+        "then and at the end.",
     ),
 ]
 BackgroundOption: TypeAlias = Annotated[
@@ -157,14 +182,16 @@ def fit(
     representation: RepresentationOption = DEFAULTS.representation,
     steps: StepsOption = None,
     resolution: ResolutionOption = None,
-    rays: RaysOption = DEFAULTS.rays,
+    rays: RaysOption = None,
     learning_rate: LearningRateOption = DEFAULTS.learning_rate,
     total_variation: TotalVariationOption = DEFAULTS.total_variation,
     degree: DegreeOption = None,
     prune: PruneOption = DEFAULTS.prune,
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
+    decode: DecodeOption = DEFAULTS.decode,
     start_from: StartFromOption = None,
+    freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
@@ -176,16 +203,23 @@ def fit(
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
-    """Recover a scene from photographs with known cameras.
+    """Recover a scene from photographs with known cameras, or fit a network to a picture.
 
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
     comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
 
+    In the place of CAPTURE, a picture (.png, .jpg) is fitted by a network behind an encoding:
+    --representation hash_grid, frequencies, nerf or one_blob, --resolution of the finest level,
+    --rays pixels a step. OUT then holds image.npz and picture.png.
+
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
+    if is_picture(capture):
+        fit_picture(context, capture, out)
+        return
     if not resume:
         require_startable(representation)
     context.with_resource(run_folder("fit", out, FILE_NAME, resume=resume, argument="--out"))
@@ -201,17 +235,42 @@ def fit(
         chosen |= {"rays": rays, "seed": seed}
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
-        chosen |= {"gaussians": gaussians, "density_control": density_control}
+        chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
         job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
         note(job.start_rule)
     with stop_on_signals() as stopping:
-        result = run_with_bar(job, out, stopping, checkpoint_seconds)
-    emit(summary(result) | exported(job, out), as_json=as_json, title="fit")
+        result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
+    emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def run_and_score(
+    job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float, *, freeze: bool
+) -> tuple[FitResult, dict[str, Any]]:
+    """Run a fit; with `freeze` also {"frozen": ..., "refined": ...}, once it has ended.
+
+    Args:
+        job: the fit.
+        out: its folder.
+        stopping: asked after each step.
+        checkpoint_seconds: between two checkpoints.
+        freeze: whether its structure is held once it is known, and both moments are scored.
+    """
+    if not freeze:
+        return run_with_bar(job, out, stopping, checkpoint_seconds), {}
+    results = []
+
+    def run(fit: Fit, folder: Path, enough: Callable[[], bool]) -> FitResult:
+        either = lambda: stopping() or enough()  # noqa: E731
+        results.append(run_with_bar(fit, folder, either, checkpoint_seconds))
+        return results[-1]
+
+    found = learn_freeze_refine(job, out, run=run)
+    return results[-1], {} if found is None else asdict(found)
 
 
 def first_model(path: Path) -> Model:
@@ -251,12 +310,6 @@ def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = Fal
         f"split {loaded.split_hash()}"
     )
     return loaded
-
-
-def is_given(context: typer.Context, name: str) -> bool:
-    """Whether the command line names an option."""
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
 
 
 def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:

@@ -44,6 +44,7 @@ from photograd.types import Array
 if TYPE_CHECKING:
     from photograd_course import viz
 
+    from photograd.fitting.group_gradients import GroupGradients
     from photograd.fitting.sign_claim import SignClaim
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
@@ -179,15 +180,47 @@ def draw_groups(
     model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
 ) -> dict[str, Any]:
     """The gradient of any field, in pixels and groups, at three steps of its fit."""
-    from photograd.fitting.group_gradients import draw_group_gradients, group_gradients
+    from photograd.fitting.group_gradients import draw_group_gradients
+
+    rows = gradients_of_groups(model, folder, capture, rays, seed)
+    pictures = {"group_gradients": draw_group_gradients(rows)}
+    return {"steps": list(rows), **save_pictures(model, pictures, out)}
+
+
+def draw_networks(
+    model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
+) -> dict[str, Any]:
+    """The same of a field of networks, and by level and layer."""
+    from photograd.fitting.group_gradients import draw_group_gradients
+    from photograd.fitting.network_gradients import draw_layer_gradients, draw_level_gradients
+    from photograd.network import HashEncoding
+
+    field: Any = model.field
+    rows = gradients_of_groups(model, folder, capture, rays, seed)
+    networks = {"density": field.density, "color": field.color}
+    inside = {step: found.gradients for step, found in rows.items()}
+    pictures = {
+        "group_gradients": draw_group_gradients(rows),
+        "layer_gradients": draw_layer_gradients(inside, networks),
+    }
+    if isinstance(field.encoding, HashEncoding):
+        tables = {step: gradients["table"] for step, gradients in inside.items()}
+        pictures["level_gradients"] = draw_level_gradients(tables, field.encoding)
+    return {"steps": list(rows), **save_pictures(model, pictures, out)}
+
+
+def gradients_of_groups(
+    model: Model, folder: Path, capture: Capture, rays: int, seed: int
+) -> dict[int, GroupGradients]:
+    """{step: gradients} of a few snapshots of a fit, under a progress bar."""
+    from photograd.fitting.group_gradients import group_gradients
 
     chosen, rows = few_snapshots(model, folder), {}
     with Progress("gradients", len(chosen), [Column("loss", "{:.2e}".format)]) as bar:
         for number, (step, field) in enumerate(chosen.items()):
             rows[step] = group_gradients(model, field, capture, seed=seed, max_rays=rays)
             bar.update(number + 1, loss=rows[step].loss)
-    pictures = {"group_gradients": draw_group_gradients(rows)}
-    return {"steps": list(chosen), **save_pictures(model, pictures, out)}
+    return rows
 
 
 def draw_gaussians(
@@ -215,7 +248,12 @@ def draw_gaussians(
     return {"steps": list(chosen), **save_pictures(model, pictures, out)}
 
 
-DRAWERS = {"voxels": draw_voxels, "gaussians": draw_gaussians, "groups": draw_groups}
+DRAWERS = {
+    "voxels": draw_voxels,
+    "gaussians": draw_gaussians,
+    "networks": draw_networks,
+    "groups": draw_groups,
+}
 """What draws the gradient of a field, by its `gradient_picture`."""
 
 

@@ -9,8 +9,11 @@ from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
+from photograd.fields.leaf_codes import LeafCodes
 from photograd.fields.nerf import Nerf
+from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
+from photograd.fields.plenoctree import PlenOctree
 from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
@@ -28,8 +31,12 @@ __all__ = [
     "GaussianScene",
     "Gaussians2D",
     "HashGrid",
+    "ImagePolicy",
+    "LeafCodes",
     "Nerf",
+    "NeuralImage",
     "OctreeSh",
+    "PlenOctree",
     "Points",
     "SparseSh",
     "SunlitMedium",

@@ -48,7 +48,7 @@ class HashGrid(NeuralField):
 
     name: ClassVar[str] = "hash_grid"
     counts: ClassVar[str] = "finest level"
-    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 512, "learning_rate": 1.0}
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 512, "steps": 3000, "rays": 4096}
     policy: HashGridPolicy
     policy_class: ClassVar[type[NeuralPolicy]] = HashGridPolicy
 

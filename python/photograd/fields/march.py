@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
@@ -173,6 +174,32 @@ def march(
     return Outputs(color, 1 - transmittance, depth), context
 
 
+def cotangent_arrays(
+    function: str, d_outputs: Outputs, rays: int, dtype: npt.DTypeLike
+) -> list[Array]:
+    """Derivatives of a loss with respect to color, transmittance and depth, as marches take them.
+
+    Args:
+        function: on whose behalf errors speak.
+        d_outputs: of the shapes of the outputs; None stands for zeros.
+        rays: their number R.
+        dtype: of the results.
+
+    Returns:
+        (R, 3), (R,), (R,); transmittance is 1 - opacity.
+
+    Raises:
+        ShapeError: other shapes.
+    """
+    call, found = Arguments(function, dtype), []
+    for name, shape in {"color": (rays, 3), "opacity": (rays,), "depth": (rays,)}.items():
+        given = getattr(d_outputs, name)
+        d = np.zeros(shape, dtype) if given is None else given
+        found.append(call.array(f"d_outputs.{name}", d, shape, finite=False))
+    found[1] = -found[1]
+    return found
+
+
 def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array]:
     """{"parameters": ..., and with camera_adjoint "origins", "directions"} for a march.
 
@@ -183,11 +210,7 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
         d_outputs: of the shapes of the outputs.
     """
     c = context
-    rays = len(c.t0)
-    dtype = c.parameters.dtype
-    d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
-    d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
-    cotangents = [np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)]
+    cotangents = cotangent_arrays("march_backward", d_outputs, len(c.t0), c.parameters.dtype)
     gradients = {"parameters": np.zeros_like(c.parameters)}
     if c.camera_adjoint:
         gradients["origins"] = np.zeros_like(c.origins)

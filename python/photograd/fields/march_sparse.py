@@ -18,6 +18,7 @@ from photograd.fields.march import (
     check_camera_adjoint,
     checked_rays,
     checked_values,
+    cotangent_arrays,
     require_finite_image,
 )
 from photograd.representation import Outputs, RayBatch, RenderOptions
@@ -94,11 +95,7 @@ def march_sparse_backward(c: SparseContext, d_outputs: Outputs) -> tuple[dict[st
         d_outputs: of the shapes of the outputs.
     """
     density, coefficients, background = c.parameters
-    dtype = density.dtype
-    none = np.zeros(len(c.t0), dtype)
-    d_opacity = none if d_outputs.opacity is None else d_outputs.opacity
-    d_depth = none if d_outputs.depth is None else d_outputs.depth
-    cotangents = [np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)]
+    cotangents = cotangent_arrays("march_sparse_backward", d_outputs, len(c.t0), density.dtype)
     d_background = np.zeros_like(background)
     gradients = {"density": np.zeros_like(density), "sh": np.zeros_like(coefficients)}
     if c.camera_adjoint:

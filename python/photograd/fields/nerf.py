@@ -39,7 +39,7 @@ class Nerf(NeuralField):
 
     name: ClassVar[str] = "nerf"
     counts: ClassVar[str] = "width"
-    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 64}
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 64, "steps": 6000, "rays": 2048}
     row_updates: ClassVar[bool] = False  # every sample reaches every weight
     policy: NerfPolicy
     policy_class: ClassVar[type[NeuralPolicy]] = NerfPolicy

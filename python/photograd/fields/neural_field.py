@@ -32,9 +32,11 @@ from photograd.fields.march import (
     check_camera_adjoint,
     checked_rays,
     checked_values,
+    cotangent_arrays,
     require_finite_image,
 )
 from photograd.network import FrequencyEncoding, HashEncoding, Perceptron
+from photograd.network.explosion import require_bounded
 from photograd.representation import Fittable, Memory, Outputs, RayBatch, RenderOptions, Start
 from photograd.types import Array
 
@@ -46,7 +48,7 @@ EVERY = 16
 """Steps between two updates of the occupancy grid."""
 PARTS = 4
 """Updates after which all cells have been looked at."""
-DECAY = 0.95
+DECAY = 0.8
 """Of a cell's maximum, from look to look."""
 STEPS_ACROSS = 128
 """Steps of a march across the box, times the option `steps_per_voxel`."""
@@ -62,8 +64,7 @@ class NeuralPolicy(MarchPolicy):
 
     Attributes:
         width: of the hidden layers.
-        depth: hidden layers of the density network; the color network has one, or two behind a
-            shallow one.
+        depth: hidden layers of the density network; the color network has one.
         features: numbers that the color network takes from the density network.
         hidden: activation of the hidden layers.
     """
@@ -110,7 +111,9 @@ class NeuralField(Fittable):
     """
 
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    gradient_picture: ClassVar[str] = "networks"
     first_model_help: ClassVar[str] = "networks start with random weights"
+    frozen = False
     policy: NeuralPolicy
     policy_class: ClassVar[type[NeuralPolicy]]
 
@@ -143,12 +146,14 @@ class NeuralField(Fittable):
             skip=policy.depth // 2 if policy.depth >= 4 else 0,
         )
         self.color = Perceptron(
-            policy.features + DIRECTION_NUMBERS,
-            [policy.width] * (2 if policy.depth == 1 else 1) + [3],
-            hidden=policy.hidden,
+            policy.features + DIRECTION_NUMBERS, [policy.width, 3], hidden=policy.hidden
         )
         self.reached: Array | None = None
         e = self.encoding
+        self._parts: dict[str, Perceptron | HashEncoding]
+        self._parts = {"density": self.density, "color": self.color}
+        if isinstance(e, HashEncoding):
+            self._parts["table"] = e
         self._settings = Arguments(type(self).__name__).run(
             _core.NeuralSettings,
             e.settings if isinstance(e, HashEncoding) else None,
@@ -257,10 +262,8 @@ class NeuralField(Fittable):
 
     def state(self) -> dict[str, Array]:
         """The running maximum of each cell."""
-        reached = (
-            np.full((CELLS,) * 3, UNSEEN, np.float32) if self.reached is None else self.reached
-        )
-        return {"reached": reached}
+        unseen = np.full((CELLS,) * 3, UNSEEN, np.float32)
+        return {"reached": unseen if self.reached is None else self.reached}
 
     def load_state(self, state: Mapping[str, Array]) -> None:
         """Take what `state` returned."""
@@ -291,9 +294,13 @@ class NeuralField(Fittable):
         return occupied
 
     def after_step(self, rates: Mapping[str, float], step: int) -> None:
-        """Look at a part of the cells, at random places in them, every few steps."""
+        """Look at a part of the cells, at random places in them, every few steps.
+
+        Raises Error if a layer or a level has exploded, and names it.
+        """
         del rates
-        if step % EVERY:
+        require_bounded("fit", self.params, self._parts)
+        if step % EVERY or self.frozen:
             return
         if self.reached is None:
             self.reached = np.full((CELLS,) * 3, UNSEEN, np.float32)
@@ -306,6 +313,15 @@ class NeuralField(Fittable):
         flat = self.reached.reshape(-1)
         before = np.where(flat[index] < UNSEEN, flat[index] * np.float32(DECAY), 0)
         flat[index] = np.maximum(before, found)
+
+    @classmethod
+    def frozen_at(cls, options: FitOptions) -> int:
+        """Halfway: the occupancy is held from there on."""
+        return options.steps // 2
+
+    def freeze(self) -> None:
+        """Hold the occupancy."""
+        self.frozen = True
 
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
@@ -329,12 +345,8 @@ class NeuralField(Fittable):
         The camera adjoint is the interior term: where a ray meets the box is held fixed.
         """
         c = context
-        rays, dtype = len(c.rays[2]), c.parameters[1].dtype
-        d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
-        d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
-        cotangents = [
-            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
-        ]
+        function, dtype = f"{self.name}.render_backward", c.parameters[1].dtype
+        cotangents = cotangent_arrays(function, d_outputs, len(c.rays[2]), dtype)
         d_parameters = tuple(np.zeros_like(values) for values in c.parameters)
         d_rays = tuple(np.zeros_like(a) for a in c.rays[:2]) if c.camera_adjoint else None
         of_field = (self._settings, c.parameters, c.occupancy, c.march, c.rays)

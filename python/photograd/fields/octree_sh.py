@@ -2,56 +2,31 @@
 
 The structure half of PlenOctrees [Yu2021]: topology comes from a field that is known already and
 stays fixed; the leaves are parameters like any other. A ray meets leaf after leaf, in each of which
-everything is constant, so that emission and absorption along it need no quadrature:
-
-    s_k     = sigma_k (t1_k - t0_k)                    leaf k between t0_k and t1_k
-    w_k     = exp(-s_0 - ... - s_{k-1}) (1 - exp(-s_k))
-    color   = sum_k w_k rgb_k,  depth = sum_k w_k (t0_k + t1_k) / 2,  opacity = 1 - exp(-sum_k s_k)
-
-    d_s_k   = exp(-s_0 - ... - s_k) v_k - sum_{j>k} w_j v_j + d_opacity (1 - opacity)
-    v_k     = <d_color, rgb_k> + d_depth (t0_k + t1_k) / 2
-    d_sigma = (t1 - t0) d_s,   d_t1 = sigma d_s + w d_depth / 2,   d_t0 = -sigma d_s + w d_depth / 2
-
-As in cpp/photograd/ops/composite.h, the sum over later leaves is what the whole ray has left. A ray
-leaves a box through the plane x_a = c at t = (c - o_a) / d_a, so
-
-    dt / do_a = -1 / d_a,   dt / dd_a = -t / d_a
-
-and the camera adjoint is exact: no sample hides a border that moves.
+everything is constant, so that emission and absorption along it need no quadrature, and the camera
+adjoint is exact: no sample hides a border that moves. The mathematics is in
+cpp/photograd/render/march/octree_sh.h.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.portable_math import sigmoid, softplus
 from photograd_course.random import uniform
 
 from photograd import sh
 from photograd._arrays import Arguments
 from photograd._checkpoint import Row
 from photograd._checks import from_plain
+from photograd._compiled import _core
 from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.octree_leaves import (
-    Borders,
-    Leaves,
-    Segments,
-    TreePolicy,
-    Walk,
-    border_gradients,
-    composite,
-    leaves_of_grid,
-    leaves_of_voxels,
-    optical_depth_backward,
-    segments_of,
-    sums,
-)
+from photograd.fields.march import cotangent_arrays
+from photograd.fields.octree_leaves import Leaves, TreePolicy, leaves_of_grid, leaves_of_voxels
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.voxel_field import VoxelField, harmonic_rows
 from photograd.grids.octree import Octree, tree_of_leaves
@@ -61,15 +36,12 @@ from photograd.types import Array
 
 @dataclass(frozen=True)
 class OctreeContext:
-    """What the backward pass needs: the rays' segments and what was met in them."""
+    """What the backward pass needs: O(1) per ray."""
 
-    params: dict[str, Array]
-    borders: Borders
-    segments: Segments
-    walk: Walk
-    sigma_t: Array  # (M,)
-    rgb: Array  # (M, 3)
-    outputs: Outputs
+    parameters: tuple[Array, Array, Array]
+    rays: tuple[Array, Array, Array]
+    stop: float
+    image: tuple[Array, Array, Array]
     camera_adjoint: bool
 
 
@@ -90,7 +62,7 @@ class OctreeSh(VoxelField):
         "fit a dense_grid or a sparse_sh first, and start from that (--start-from)"
     )
     keeps_background: ClassVar[bool] = True
-    rays_at_once: ClassVar[int] = 1 << 13  # each keeps numbers of every leaf that it crosses
+    rays_at_once: ClassVar[int] = 1 << 15  # each keeps numbers of every leaf that it crosses
     starts_empty: ClassVar[bool] = False
     gradient_note: ClassVar[str] = "Each cell of a leaf shows the gradient of the whole leaf."
 
@@ -128,7 +100,7 @@ class OctreeSh(VoxelField):
     @classmethod
     def from_dense_grid(
         cls, field: DenseGrid, *, degree: int = 2, opacity: float = 0.01, tolerance: float = 0.05
-    ) -> OctreeSh:
+    ) -> Self:
         """Tabulate a dense grid: its voxels become leaves, and equal ones share a larger leaf.
 
         Args:
@@ -143,7 +115,7 @@ class OctreeSh(VoxelField):
     @classmethod
     def from_sparse_sh(
         cls, field: SparseSh, *, degree: int | None = None, opacity: float = 0.01
-    ) -> OctreeSh:
+    ) -> Self:
         """Tabulate a sparse grid: a leaf for each voxel that is seen, large ones between them.
 
         Args:
@@ -158,7 +130,7 @@ class OctreeSh(VoxelField):
         return cls._of_leaves(leaves, field.params["sh"].dtype, field.policy.density_scale)
 
     @classmethod
-    def _of_leaves(cls, leaves: Leaves, kind: np.dtype[Any], density_scale: float) -> OctreeSh:
+    def _of_leaves(cls, leaves: Leaves, kind: np.dtype[Any], density_scale: float) -> Self:
         return cls(
             leaves.tree,
             leaves.row,
@@ -168,7 +140,7 @@ class OctreeSh(VoxelField):
         )
 
     @classmethod
-    def start(cls, start: Start) -> tuple[OctreeSh, str]:
+    def start(cls, start: Start) -> tuple[Self, str]:
         """The leaves of a grid that was fitted before.
 
         Raises RangeError for a field that is no grid.
@@ -182,9 +154,17 @@ class OctreeSh(VoxelField):
             expected = f"a model of {' or '.join(cls.first_model_kinds)}"
             got = "none" if field is None else repr(field.name)
             raise RangeError(message("Fit.start", "start_from", expected, got))
-        leaves, side = len(tree.tree.values), tree.resolution
-        rule = f"{tree.shape[0]:,} of {leaves:,} leaves hold matter, in a tree of {side}³ cells"
-        return tree, rule
+        return tree, tree._sentence()
+
+    def _sentence(self) -> str:
+        leaves, side = len(self.tree.values), self.resolution
+        return f"{self.shape[0]:,} of {leaves:,} leaves hold matter, in a tree of {side}³ cells"
+
+    @classmethod
+    def frozen_at(cls, options: FitOptions) -> int:
+        """From the start: the tree is cut from another model."""
+        del options
+        return 0
 
     @classmethod
     def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
@@ -213,7 +193,7 @@ class OctreeSh(VoxelField):
         return cls(tree, row, params["density"], params["sh"], density_scale=told.density_scale)
 
     @classmethod
-    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> OctreeSh:
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Self:
         """Leaves of three sizes in 8 x 8 x 8 cells, a third of them empty, degree 2."""
         u = uniform(seed, step=0, pixel=np.arange(8**3), sample=0, dimension=0).reshape(8, 8, 8)
         coarse = u[:2, :2, :2].repeat(4, axis=0).repeat(4, axis=1).repeat(4, axis=2)
@@ -288,34 +268,11 @@ class OctreeSh(VoxelField):
     ) -> tuple[Outputs, OctreeContext]:
         """Color (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
         del seed, step  # nothing random here: no lattice that could be jittered
-        density, coefficients = self.params["density"], self.params["sh"]
-        directions = np.ascontiguousarray(batch.directions, density.dtype)
-        origins = np.ascontiguousarray(batch.origins, density.dtype)
-        borders = Borders(self.tree, origins, directions)
-        segments = segments_of(borders, self.row)
-        sigma_t = (self.density_scale * softplus(density))[segments.row]
-        way = directions[segments.ray]
-        raw = sh.evaluate(coefficients[segments.row], way)
-        rgb = sigmoid(raw)
-        rays = len(origins)
-        walk = composite(segments, sigma_t * (segments.t1 - segments.t0), rays, options.stop)
-        color = np.stack(
-            [sums(segments.ray, walk.weight * channel, rays) for channel in rgb.T], axis=-1
-        )
-        depth = sums(segments.ray, walk.weight * segments.middle, rays)
-        outputs = Outputs(
-            color.astype(density.dtype), 1 - walk.transmittance, depth.astype(density.dtype)
-        ).checked("OctreeSh.render", batch)
-        context = OctreeContext(
-            dict(self.params),
-            borders,
-            segments,
-            walk,
-            sigma_t,
-            rgb,
-            outputs,
-            options.camera_adjoint,
-        )
+        rays, parameters = self._rays(batch), self._arrays()
+        image = _core.march_octree_sh(self.tree.core, parameters, *self._about(rays, options.stop))
+        color, transmittance, depth = image
+        outputs = Outputs(color, 1 - transmittance, depth).checked("OctreeSh.render", batch)
+        context = OctreeContext(parameters, rays, options.stop, image, options.camera_adjoint)
         return outputs, context
 
     def render_backward(self, context: OctreeContext, d_outputs: Outputs) -> dict[str, Array]:
@@ -323,38 +280,45 @@ class OctreeSh(VoxelField):
 
         Every row adds up its contributions in the order of the rays, in double precision.
         """
-        c, segments = context, context.segments
-        density, coefficients = c.params["density"], c.params["sh"]
-        weight, way = c.walk.weight, c.borders.directions[segments.ray]
-        d_color = np.asarray(d_outputs.color, density.dtype)[segments.ray]
-        d_depth = np.zeros_like(weight)
-        if d_outputs.depth is not None:
-            d_depth = np.asarray(d_outputs.depth, density.dtype)[segments.ray]
-        v = (d_color * c.rgb).sum(axis=1) + d_depth * segments.middle
-        d_s = optical_depth_backward(segments, c.walk, v, c.outputs, d_outputs)
-        d_raw = weight[:, None] * d_color * c.rgb * (1 - c.rgb)
-        met = coefficients[segments.row]
-        d_met, d_way = sh.evaluate_backward(met, way, d_raw)
-        d_sigma_t = d_s * (segments.t1 - segments.t0)
-        d_density = sums(segments.row, d_sigma_t, len(density))
-        slope = self.density_scale * sigmoid(density)
-        flat = d_met.reshape(len(d_met), -1)
-        d_sh = np.stack(
-            [sums(segments.row, column, len(density)) for column in flat.T], axis=-1
-        ).reshape(coefficients.shape)
-        gradients = {
-            "density": (d_density * slope).astype(density.dtype),
-            "sh": d_sh.astype(density.dtype),
-        }
-        if c.camera_adjoint:
-            pull = 0.5 * weight * d_depth
-            d_t0, d_t1 = pull - c.sigma_t * d_s, pull + c.sigma_t * d_s
-            d_origins, d_directions = border_gradients(c.borders, segments, d_t0, d_t1)
-            for axis in range(3):
-                d_directions[:, axis] += sums(segments.ray, d_way[:, axis], len(d_directions))
-            gradients["origins"] = d_origins.astype(density.dtype)
-            gradients["directions"] = d_directions.astype(density.dtype)
+        c = context
+        _, density, coefficients = c.parameters
+        rays, dtype = len(c.rays[0]), density.dtype
+        cotangents = cotangent_arrays("OctreeSh.render_backward", d_outputs, rays, dtype)
+        gradients = {"density": np.zeros_like(density), "sh": np.zeros_like(coefficients)}
+        d_rays = tuple(np.zeros((rays, 3), dtype) for _ in range(2)) if c.camera_adjoint else None
+        of_field = self.tree.core, c.parameters, *self._about(c.rays, c.stop)
+        d_parameters = gradients["density"], gradients["sh"]
+        _core.march_octree_sh_backward(*of_field, c.image, cotangents, d_parameters, d_rays)
+        if d_rays is not None:
+            gradients["origins"], gradients["directions"] = d_rays
         return gradients
+
+    def greatest_weights(self, batches: Iterable[RayBatch]) -> Array:
+        """(N,) the greatest weight that each row has in any of these rays, 0 to 1.
+
+        Args:
+            batches: of rays; give all views, as one may see what this one does not.
+        """
+        weight = np.zeros_like(self.params["density"])
+        for batch in batches:
+            about = self._about(self._rays(batch), 0.0)
+            _core.octree_sh_weights(self.tree.core, self._arrays(), *about, weight)
+        return weight
+
+    def _arrays(self) -> tuple[Array, Array, Array]:
+        return self.row, self.params["density"], self.params["sh"]
+
+    def _rays(self, batch: RayBatch) -> tuple[Array, Array, Array]:
+        """Origins and directions in cells, directions in the world."""
+        dtype = self.params["density"].dtype
+        origins = np.ascontiguousarray(batch.origins, dtype)
+        directions = np.ascontiguousarray(batch.directions, dtype)
+        return (*self.tree.rays_in_cells(origins, directions), directions)
+
+    def _about(
+        self, rays: tuple[Array, Array, Array], stop: float
+    ) -> tuple[float, Any, Any, float]:
+        return self.density_scale, rays, self.tree.cell_size.tolist(), stop
 
     def state(self) -> dict[str, Array]:
         """{"lower" (L, 3), "side" (L,), "row" (L,)}: which cube of cells has which row."""

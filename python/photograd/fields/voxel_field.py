@@ -159,6 +159,13 @@ class GridField(VoxelField):
         return after
 
     @classmethod
+    def frozen_at(cls, options: FitOptions) -> int | None:
+        """After the last pruning, and at the last level, of a grid that is pruned."""
+        if "prune" not in cls.fit_options:
+            return None
+        return max(int(PRUNE_AT * options.steps), *options.levels()) + 1
+
+    @classmethod
     def events(cls, options: FitOptions) -> dict[int, str]:
         """Each level."""
         return {step: f"{size}³" for step, size in options.levels().items()}

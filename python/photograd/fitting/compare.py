@@ -117,7 +117,7 @@ def source_of(
     """The model that a candidate starts from; None for what starts by itself.
 
     It is `start_from` where that is of a kind to start from, or the model of the nearest candidate
-    before it of the same resolution. Raises RangeError if there is none.
+    before it, of the same resolution where that means the same. Raises RangeError if there is none.
 
     Args:
         candidate: one of `candidates`.
@@ -131,8 +131,9 @@ def source_of(
         return start_from
     before = candidates[: candidates.index(candidate)]
     for other in reversed(before):
-        fits = other.representation in kind.first_model_kinds
-        if fits and other.resolution == candidate.resolution:
+        if other.representation not in kind.first_model_kinds:
+            continue
+        if other.resolution == candidate.resolution or not kind.same_resolution:
             return other
     raise RangeError(
         message(

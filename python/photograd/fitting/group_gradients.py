@@ -40,7 +40,8 @@ CAPTION = (
 class GroupGradients:
     """Of one field: its picture (H, W, 3) in display values, d_pixel (H, W), rms by group.
 
-    `image` (h, w) is what the field shows of its parameters' gradient, or None.
+    `image` (h, w) is what the field shows of its parameters' gradient, or None; `gradients` has
+    the derivatives themselves, in the shapes of the parameters.
     """
 
     picture: Array
@@ -48,6 +49,7 @@ class GroupGradients:
     rms: dict[str, float]
     image: Array | None
     loss: float
+    gradients: dict[str, Array]
 
     def _repr_png_(self) -> bytes:
         """The picture, the derivative with respect to its pixels, and `image` if there is one."""
@@ -87,7 +89,7 @@ def group_gradients(
         picture_loss(outputs, view, constant_background("white"), ssim_weight=0.0)
     )
     d_pixel = d_outputs.color.mean(axis=1).reshape(picture.shape[:2])
-    return GroupGradients(picture, d_pixel, rms, field.gradient_image(total), loss)
+    return GroupGradients(picture, d_pixel, rms, field.gradient_image(total), loss, total)
 
 
 def draw_group_gradients(rows: Mapping[int, GroupGradients]) -> Figure:

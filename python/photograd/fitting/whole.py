@@ -60,14 +60,14 @@ def fit(
 
     Args:
         capture: posed photographs, or where `load_capture` finds them.
-        representation: "dense_grid", "dense_sh", "sparse_sh", "gaussians", "octree_sh" or
-            "textured_mesh".
+        representation: "dense_grid", "sparse_sh", "gaussians", or another of
+            `photograd.fields.fittable()`.
         folder: for the checkpoint, DIR/model.npz, written every 30 s and at the end, and for
             snapshots of some steps; None keeps nothing on disk.
         resume: go on from the checkpoint in `folder`, with its representation and options, to the
             same bits as without interruption.
         start_from: a model of the same capture: Gaussians begin on its surfaces, the leaves of an
-            octree are cut from it, a textured mesh is that of it.
+            octree are cut from it, codes take its voxels, a textured mesh is that of it.
         bar: show progress on stderr.
         options: fields of `FitOptions`, here with its defaults; a representation may have others,
             which `options_for` returns.

@@ -181,16 +181,34 @@ class _SpatialTree:
             DtypeError, ShapeError, RangeError: other types or shapes; not finite; no direction.
         """
         name = f"{type(self).__name__}.traverse"
+        o, d = self.rays_in_cells(origins, directions)
+        limits = []
+        for argument, limit in (("t_min", t_min), ("t_max", t_max)):
+            limits.append(_spread(name, argument, limit, (len(o),), o.dtype, low=-np.inf))
+        return LeafVisits(*self._core.traverse(o, d, *limits))
+
+    def rays_in_cells(self, origins: Array, directions: Array) -> tuple[Array, Array]:
+        """Rays (R, D) of the world in cells of the root: t is the same in both.
+
+        Raises what `traverse` raises.
+
+        Args:
+            origins: (R, D) in meters.
+            directions: (R, D) of any length but zero, same dtype.
+        """
+        name = f"{type(self).__name__}.traverse"
         o = self._cells(name, "origins", origins, shift=True)
         d = self._cells(name, "directions", directions, shift=False)
         still = ~d.any(axis=1)
         if still.any():
             got = f"{int(still.sum())} that are zero, first in row {int(np.argmax(still))}"
             raise RangeError(message(name, "directions", "directions with a length", got))
-        limits = []
-        for argument, limit in (("t_min", t_min), ("t_max", t_max)):
-            limits.append(_spread(name, argument, limit, (len(o),), o.dtype, low=-np.inf))
-        return LeafVisits(*self._core.traverse(o, d, *limits))
+        return o, d
+
+    @property
+    def core(self) -> Any:
+        """The tree of the core, for its other functions."""
+        return self._core
 
     def leaf_boxes(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
         """Lower corners (L, D) and sides (L,) of the leaves, in cells."""

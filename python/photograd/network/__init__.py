@@ -1,6 +1,7 @@
 """Small multilayer perceptrons and the encodings of their inputs, forward and backward.
 
 * `Perceptron`: weights in one array, evaluated in blocks that stay in the cache.
+* `LayerValues`: what its forward pass may keep for the backward pass.
 * `HashEncoding`: multiresolution hash encoding of points in the unit square or cube.
 * `FrequencyEncoding`, `OneBlobEncoding`: encodings without parameters.
 
@@ -11,12 +12,13 @@ from __future__ import annotations
 
 from .encodings import FrequencyEncoding, OneBlobEncoding
 from .hash_encoding import HashEncoding, Level
-from .perceptron import Activation, Perceptron
+from .perceptron import Activation, LayerValues, Perceptron
 
 __all__ = [
     "Activation",
     "FrequencyEncoding",
     "HashEncoding",
+    "LayerValues",
     "Level",
     "OneBlobEncoding",
     "Perceptron",

@@ -42,6 +42,7 @@ class HashEncoding:
     Attributes:
         levels: coarse to fine.
         features: numbers in a row.
+        smoothstep: whether interpolation has no kinks.
         rows: of the table of all levels.
         settings: the core's form of the levels.
     """
@@ -70,7 +71,7 @@ class HashEncoding:
         self.settings = Arguments("HashEncoding").run(
             _core.HashSettings, dimensions, list(resolutions), log2_rows, features, smoothstep
         )
-        self.dimensions, self.features = dimensions, features
+        self.dimensions, self.features, self.smoothstep = dimensions, features, smoothstep
         self.levels = tuple(Level(*level) for level in self.settings.levels)
         self.rows: int = self.settings.rows
 

@@ -18,6 +18,21 @@ Activation = Literal["identity", "relu", "softplus", "exp", "sigmoid"]
 _ACTIVATIONS = get_args(Activation)
 
 
+class LayerValues:
+    """Room for the numbers of all layers at many inputs, used again from call to call.
+
+    `Perceptron.forward` fills it, `Perceptron.backward` then has no layer to evaluate again. An
+    input takes four bytes for each of `Perceptron.inputs` and `Perceptron.widths`.
+
+    Attributes:
+        core: the numbers, in the core's blocks.
+    """
+
+    def __init__(self) -> None:
+        """Start without room."""
+        self.core = _core.PerceptronValues()
+
+
 class Perceptron:
     """x_{l+1} = a_l(W_l x_l + b_l) for layers l = 0, 1, ...
 
@@ -106,26 +121,36 @@ class Perceptron:
             W[:] = (2.0 * u - 1.0) * np.sqrt(scale / W.shape[1])
         return parameters.astype(dtype)
 
-    def forward(self, parameters: Array, inputs: Array, *, fused: bool = True) -> Array:
+    def forward(
+        self,
+        parameters: Array,
+        inputs: Array,
+        *,
+        fused: bool = True,
+        values: LayerValues | None = None,
+    ) -> Array:
         """The outputs of many inputs.
 
         Args:
             parameters: (count,), float32 or float64.
             inputs: (N, self.inputs), of the same dtype.
             fused: by the kernel, for float32; else by the plain formulas, to the same bits.
+            values: filled with the numbers of all layers, for `backward`; of the kernel alone.
 
         Returns:
             (N, outputs)
 
         Raises:
             ShapeError, DtypeError: arrays other than these.
-            RangeError: numbers that are not finite.
+            RangeError: numbers that are not finite, or values without the kernel.
         """
         call = Arguments("Perceptron.forward")
         parameters = call.array("parameters", parameters, (self.count,))
         inputs = call.array("inputs", inputs, ("N", self.inputs))
         outputs = np.empty((len(inputs), self.outputs), inputs.dtype)
-        call.run(_core.perceptron_forward, self.shape, parameters, inputs, outputs, fused)
+        arrays = (parameters, inputs, outputs)
+        kept = None if values is None else values.core
+        call.run(_core.perceptron_forward, self.shape, *arrays, fused, kept)
         return outputs
 
     def backward(
@@ -137,10 +162,11 @@ class Perceptron:
         out: Array | None = None,
         d_inputs: bool = True,
         fused: bool = True,
+        values: LayerValues | None = None,
     ) -> tuple[Array, Array | None]:
         """Derivatives of a loss with respect to the parameters and the inputs.
 
-        Evaluates the layers again: nothing has to be kept from `forward`.
+        Evaluates the layers again, unless it gets the values that `forward` left.
 
         Args:
             parameters: (count,), float32 or float64.
@@ -149,13 +175,14 @@ class Perceptron:
             out: (count,), is added to; by default zeros.
             d_inputs: whether derivatives with respect to the inputs are wanted.
             fused: as in `forward`.
+            values: as `forward` filled them, at the same parameters and inputs.
 
         Returns:
             d_parameters (count,), `out` where it is given, and d_inputs (N, self.inputs) or None.
 
         Raises:
             ShapeError, DtypeError: arrays other than these.
-            RangeError: numbers that are not finite.
+            RangeError: numbers that are not finite, or values of other inputs.
         """
         call = Arguments("Perceptron.backward")
         parameters = call.array("parameters", parameters, (self.count,))
@@ -164,7 +191,8 @@ class Perceptron:
         d_parameters = np.zeros_like(parameters) if out is None else out
         d_x = np.empty_like(inputs) if d_inputs else None
         arrays = (parameters, inputs, d_outputs, d_parameters, d_x)
-        call.run(_core.perceptron_backward, self.shape, *arrays, fused)
+        kept = None if values is None else values.core
+        call.run(_core.perceptron_backward, self.shape, *arrays, fused, kept)
         return d_parameters, d_x
 
     def _takes(self, layer: int) -> int:

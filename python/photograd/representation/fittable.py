@@ -99,6 +99,8 @@ class Fittable(Representation):
     """Whether a fit may, or must, start from another model."""
     first_model_kinds: ClassVar[tuple[str, ...]] = ()
     """Names of the representations of such a model; empty for all."""
+    same_resolution: ClassVar[bool] = True
+    """Whether `resolution` counts the same in such a model and here."""
     first_model_help: ClassVar[str] = "it starts by itself"
     keeps_background: ClassVar[bool] = False
     """Whether the background of that model is a better start than the mean of the photographs."""
@@ -250,6 +252,19 @@ class Fittable(Representation):
         """
         del options
         return {}
+
+    @classmethod
+    def frozen_at(cls, options: FitOptions) -> int | None:
+        """The step from which on its structure can be held; None if nothing of it is discrete.
+
+        Args:
+            options: of the fit.
+        """
+        del options
+        return None
+
+    def freeze(self) -> None:
+        """Hold the structure from here on, where a fit would still change it."""
 
     def stored(self) -> dict[str, Array]:
         """The arrays without which it could not be drawn."""

@@ -236,11 +236,11 @@ class PathTracer:
 
         Raises:
             ShapeError: d_image of another shape than the picture.
-            RangeError: spp below 1, or another spread.
+            RangeError: spp below 1, another spread, or d_image with numbers that are not finite.
         """
         call = Arguments("PathTracer.render_backward", np.float64)
         view = checked_view(call.function, self.scene.camera, camera, options)
-        d_image = call.array("d_image", d_image, (view.height, view.width, 3), finite=False)
+        d_image = call.array("d_image", d_image, (view.height, view.width, 3))
         call.integer("spp", spp, low=1)
         return self.add_up(
             "render_backward",

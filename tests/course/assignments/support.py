@@ -16,7 +16,7 @@ import functools
 import io
 import re
 import tempfile
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -84,34 +84,34 @@ def judge(
 ) -> list[Outcome]:
     """The outcome of every check, or of those of some tasks; by default for the solution.
 
-    Each by itself: what the price of a derivative takes from the others is `points_by_task`'s.
+    Each by itself: what the price of a derivative takes from the others is `points_by_task`'s. With
+    another secret than that of the tests of hidden checks alone: no other seeds depend on it.
     """
-    alone: list[Outcome] = []
-    _run(folder, source_text or source(folder), secret, tasks, alone)
-    return alone
+    return _run(folder, source_text or source(folder), secret, frozenset(tasks))[0]
 
 
 def points_by_task(folder: Path, source_text: str, tasks: Collection[str]) -> dict[str, float]:
     """What a text earns in some tasks, after the price of derivatives has been asked."""
     earned = dict.fromkeys(tasks, 0.0)
-    for outcome in _run(folder, source_text, SECRET, tasks, []):
+    for outcome in _run(folder, source_text, SECRET, frozenset(tasks))[1]:
         earned[outcome.task] += outcome.points
     return earned
 
 
+@functools.cache
 def _run(
-    folder: Path, text: str, secret: bytes, tasks: Collection[str], alone: list[Outcome]
-) -> list[Outcome]:
+    folder: Path, text: str, secret: bytes, tasks: frozenset[str]
+) -> tuple[list[Outcome], list[Outcome]]:
+    """Outcomes of checks by themselves, and in the end."""
     bundle = bundle_of(folder, secret)
-    checks = [each for each in bundle.checks if not tasks or each.task in tasks]
+    seeded = [each for each in bundle.checks if secret == SECRET or each.visibility != "public"]
+    checks = [each for each in seeded if not tasks or each.task in tasks]
     sources = bundle.hand(bundle.solution_files(text)).sources
-    return run_checks(
-        checks, bundle.setting, lambda given: _open(sources, given), on_outcome=alone.append
+    alone: list[Outcome] = []
+    end = run_checks(
+        checks, bundle.setting, lambda given: LocalStudent(sources, given), on_outcome=alone.append
     )
-
-
-def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
-    return LocalStudent(sources, given)
+    return alone, end
 
 
 def lost(outcomes: list[Outcome]) -> set[str]:

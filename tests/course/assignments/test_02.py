@@ -14,7 +14,7 @@ import pytest
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.load import load_module
 from photograd_course.build.named import read_alternatives
-from photograd_course.grading.outcome import Status
+from photograd_course.grading.outcome import Outcome, Status
 
 from course.assignments.support import (
     ASSIGNMENTS,
@@ -186,11 +186,16 @@ MALFORMED = {
 }
 
 
+def judged(text: str, *tasks: str) -> dict[str, Outcome]:
+    """Outcomes of the checks of some tasks, by id."""
+    return {each.id: each for each in judge(FOLDER, text, tasks=tasks)}
+
+
 @pytest.mark.parametrize("said", MALFORMED)
 def test_malformed_inputs_are_named(said: str) -> None:
     good, bad, check = MALFORMED[said]
     assert source(FOLDER).count(good) == 1
-    outcomes = {each.id: each for each in judge(FOLDER, source(FOLDER).replace(good, bad))}
+    outcomes = judged(source(FOLDER).replace(good, bad), "02.1", "02.5")
     assert outcomes[check].status is Status.FAILED
     assert said in outcomes[check].details["exception"]
     assert said in outcomes["02.5.expressions"].details["exception"]
@@ -206,7 +211,7 @@ HINTS = {
 @pytest.mark.parametrize("hint", HINTS)
 def test_a_wrong_order_gets_the_hint_that_fits(hint: str) -> None:
     check, mutant = HINTS[hint]
-    outcomes = {each.id: each for each in judge(FOLDER, apply_mutant(FOLDER, mutant))}
+    outcomes = judged(apply_mutant(FOLDER, mutant), "02.4")
     assert hint in outcomes[check].hint
     if check == "02.4.order":
         assert "in the graph a, b(a), c(a, b) with the root c" in outcomes[check].text
@@ -224,7 +229,7 @@ IN_PLACE = """\
 def test_moving_x_in_place_is_not_taken_for_another_mistake() -> None:
     text = apply_mutant(FOLDER, "check_moves_x")
     table = json.loads((FOLDER / "hints.json").read_text("utf-8"))
-    said = {each.id: each.hint for each in judge(FOLDER, text) if each.task == "02.6"}
+    said = {id: each.hint for id, each in judged(text, "02.6").items()}
     assert "You change x itself" in said["02.6.rejects"]
     assert not any("divide by the norm" in hint for hint in said.values())
     assert any("divide by the norm" in hint for hint in table.values())
@@ -232,7 +237,7 @@ def test_moving_x_in_place_is_not_taken_for_another_mistake() -> None:
     first = text.index("        step = eps * max")
     last = text.index("    error = float")
     moved = text[:first] + IN_PLACE + text[last:]
-    outcome = {each.id: each for each in judge(FOLDER, moved)}["02.6.accepts"]
+    outcome = judged(moved, "02.6")["02.6.accepts"]
     assert "has changed the x" in outcome.text
     assert "copies of x" in outcome.hint
 

@@ -75,9 +75,9 @@ def test_check_values_of_octree_and_skipping(solution) -> None:
     assert len(solution.octree_from_dense(checkers)) == 585
     asked: list[np.ndarray] = []
 
-    def leaf(places):
-        asked.append(places)
-        return solution.octree_leaf(tree, 4, places)
+    def leaf(points):
+        asked.append(points)
+        return solution.octree_leaf(tree, 4, points)
 
     for start, stride, first, questions in (
         ([0.2, 0.3, 3.5], [0.4, 0.2, 0.0], 5, 2),

@@ -224,6 +224,6 @@ def test_the_exploration_runs_and_tells_the_two_formulas_apart(tmp_path: Path) -
     assert mended == pytest.approx(differences, abs=2e-4)
     assert abs(public - differences) > 0.1 * abs(differences)
     if "core not installed" not in said:
-        pictures, derivatives = said.split("images differ by ")[1].split(", derivatives by ")
+        pictures, derivatives = said.split("images differ by ")[1].split(", derivatives differ by ")
         assert float(pictures) < 1e-10
         assert float(derivatives.split()[0]) < 1e-9

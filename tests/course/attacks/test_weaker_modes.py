@@ -13,16 +13,24 @@ from course.attacks.suite import STRICT, Results, strongest
 from support.missing import missing
 
 pytestmark = pytest.mark.slow
-# Mode C runs always: it is what a container has.
+# Attacks by nothing but answers, archives or texts: they meet the same code of the grader in every
+# mode. Under the strongest mode they run always, in the weaker ones where modes are asked for.
+ANSWERS = {9, 14, *range(32, 46), 51, 54, 56, 57, 60, 62, 69, 70, 72, 73, 74}
+# Mode C runs always against what a worker does to its machine: it is what a container has.
 WEAKER = [
-    mode if mode == "C" else pytest.param(mode, marks=pytest.mark.exhaustive)
+    pytest.param(
+        attack,
+        mode,
+        marks=() if mode == "C" and attack.number not in ANSWERS else pytest.mark.exhaustive,
+        id=f"{attack.name}-{mode}",
+    )
+    for attack in read_attacks()
     for mode in STRICT
     if mode != strongest()
 ]
 
 
-@pytest.mark.parametrize("mode", WEAKER)
-@pytest.mark.parametrize("attack", read_attacks(), ids=lambda attack: attack.name)
+@pytest.mark.parametrize(("attack", "mode"), WEAKER)
 def test_the_grader_survives(attack: Attack, mode: str, results: Callable[[str], Results]) -> None:
     result = results(mode)[attack.name]
     assert result["violations"] == []

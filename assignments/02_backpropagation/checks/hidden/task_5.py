@@ -1,9 +1,10 @@
 """Task 02.5, hidden checks."""
 
-from photograd_course.grading import Array, Items, Record, Tolerance, checks_for
+import numpy as np
+from photograd_course.grading import Array, Items, Record, Subject, Tolerance, checks_for
 
 from ..common import DIFFERENCES, EXACT, ordered
-from ..task_5 import evaluate, trusted_program
+from ..task_5 import complex_step, evaluate, random_program, trusted_program
 
 check = checks_for(calls=("backward",), visibility="hidden")
 
@@ -12,10 +13,30 @@ ANALYTIC = Tolerance(
 )
 
 
+def expressions(t, n):
+    """n random programs, and three inputs of each."""
+    made = [random_program(t.rng, 3, 8) for _ in range(n)]
+    return [program for program, _ in made], [x for _, x in made]
+
+
+def values_and_gradients(n):
+    """What `adapters.run_graphs` returns for these."""
+    return Record({"values": Array((n,)), "gradients": Items(*[Array((3,))] * n)})
+
+
+def derived(_, programs, inputs):
+    """What is right: the values, and complex-step derivatives."""
+    pairs = list(zip(programs, inputs, strict=True))
+    values = np.array([evaluate(program, x)[-1] for program, x in pairs])
+    return {"values": values, "gradients": [complex_step(program, x) for program, x in pairs]}
+
+
 @check(
     "02.5.random",
     points=4,
+    tolerance=ANALYTIC,
     sole="fifty expressions, against finite differences and complex steps of ours",
+    battery=[Subject("adapters.run_graphs", expressions, values_and_gradients, right=derived)],
 )
 def fifty_random_expressions(t):
     """Values and gradients of fifty random expressions are right."""

@@ -2,7 +2,7 @@
 
 from photograd_course.grading import Array, Subject, hidden_check
 
-from ..common import EXACT
+from ..common import EXACT, sample
 from .common import sampled
 
 
@@ -18,5 +18,4 @@ def samples_at_random_places(t):
     """Samples are right at random points of random textures, one texel wide ones included."""
     for shape in ((6, 3, 2), (1, 9, 1), (7, 1, 3), (1, 1, 2), (16, 11, 3)):
         T, uv = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.1, 1.1, (150, 2))
-        got = t.call("bilinear_sample", T, uv, returns=Array((150, shape[2])))
-        t.close("samples", got, t.reference.bilinear_sample(T, uv))
+        t.close("samples", sample(t, T, uv), t.reference.bilinear_sample(T, uv))

@@ -14,7 +14,7 @@ from .common import placed
     sole="the same mistakes at unseen points",
     battery=[Subject("trilinear", placed, lambda n: Array((n, 2)), rows=(1,))],
 )
-def samples_at_random_places(t):
+def samples_at_random_points(t):
     """Samples are right at random points of random grids, one voxel wide ones included."""
     for shape in ((6, 3, 4, 2), (1, 5, 2, 1), (1, 1, 1, 3)):
         grid, u = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.1, 1.1, (90, 3))

@@ -22,7 +22,7 @@ from .common import placed
         )
     ],
 )
-def the_adjoint_at_random_places(t):
+def the_adjoint_at_random_points(t):
     """The adjoint is right at random points, one voxel wide grids included, and cheap."""
     for shape in ((6, 3, 4), (1, 5, 2), (1, 1, 1)):
         u, g = t.rng.uniform(-0.1, 1.1, (90, 3)), t.rng.uniform(-1.0, 1.0, (90, 2))

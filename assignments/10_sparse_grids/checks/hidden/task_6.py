@@ -1,15 +1,34 @@
 """Task 10.6, hidden checks."""
 
 import numpy as np
-from photograd_course.grading import checks_for
+from photograd_course.grading import Subject, checks_for
 
 from ..common import looking, same_voxels
-from ..task_6 import CHAINED, STEPS, fitted, small_case
+from ..task_6 import CHAINED, STEPS, Fit, fitted, small_case
 
 check = checks_for(calls=("fit_sparse",), needs=STEPS, visibility="hidden")
 
 
-@check("10.6.hidden", points=4, tolerance=CHAINED, sole="the same mistakes at unseen scenes")
+def for_steps(t, n):
+    """Arguments of `fit_sparse`, for two rounds of n steps."""
+    return *small_case(t, 4, 2, 3), 2, n, 0.01, 1
+
+
+def for_rays(t, n):
+    """The same for n rays through the middle of the cube, and two steps each round."""
+    return *small_case(t, 4, n, 1), 2, 2, 0.01, 1
+
+
+@check(
+    "10.6.hidden",
+    points=4,
+    tolerance=CHAINED,
+    sole="the same mistakes at unseen scenes",
+    battery=[
+        Subject("fit_sparse", for_steps, lambda n: Fit(2 * n), sizes=(0, 1, 3)),
+        Subject("fit_sparse", for_rays, lambda _: Fit(4)),
+    ],
+)
 def fits_of_random_scenes(t):
     """Three rounds of two steps end where they should."""
     given = *small_case(t), 3, 2, 0.05, 1

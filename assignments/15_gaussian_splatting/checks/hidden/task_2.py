@@ -14,7 +14,7 @@ def projected(t, n):
     return in_world(camera, ahead(t.rng, n)), shapes(t.rng, n), camera
 
 
-def pulled(t, n):
+def backprojected(t, n):
     """Arguments of the `back` of `project`, after those of `project`."""
     return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
 
@@ -36,7 +36,7 @@ def pulled(t, n):
         ),
         Subject(
             "adapters.project_back",
-            pulled,
+            backprojected,
             lambda n: Items(Array((n, 3)), Array((n, 3, 3))),
             rows=(0, 1, 3, 4),
             has_right=False,

@@ -16,7 +16,7 @@ from photograd.transport.shapes import MeshShape, rectangle
 from photograd.types import Array
 
 _TURNS, _CAMERA = 12, 1  # 30 degrees from the front, +Z
-_LIGHT = "studio lamp"
+_LIGHT = "studio light"
 STUDIO = "studio"
 """In place of a camera's name."""
 

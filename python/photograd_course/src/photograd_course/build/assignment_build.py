@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -17,11 +17,13 @@ from .equivalents import Equivalent, read_equivalents
 from .judging import RULES_SECRET, Job, Judge, Verdict
 from .named import NamedMutant, read_alternatives, read_mutants
 from .public import wheel_kits
+from .reach import changed_functions, function_names
 from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
 
-LEAST_SECONDS = 8.0  # of processor time for one text, however short the solution takes
+# Of processor time, at least: for one check of an automatic mutant, and of what may be slower.
+LEAST_SECONDS, LEAST_PATIENT = 3.0, 8.0
 PATIENCE = 10.0  # times the solution's own seconds
 
 
@@ -47,6 +49,8 @@ class AssignmentBuild:
         bar: shows how far a long computation has come.
         haystacks: name to text of what students can see besides this kit: the wheels.
         siblings: ids of the assignments beside it.
+        public_from: a build of this folder with another secret; its verdicts on public checks count
+            here too, since no secret decides their seeds. Or None.
     """
 
     folder: Path
@@ -55,6 +59,7 @@ class AssignmentBuild:
     bar: Bar = no_bar
     haystacks: Mapping[str, str] = field(default_factory=dict)
     siblings: frozenset[str] = frozenset()
+    public_from: AssignmentBuild | None = None
 
     @cached_property
     def manifest(self) -> Manifest:
@@ -121,9 +126,38 @@ class AssignmentBuild:
         """Runs texts, as long as `PATIENCE` allows."""
         first = Judge(self.folder, self.secret, self.cache, seconds=600.0)
         solution = first.judge(Job(self.source))
-        spent = sum(float(each["seconds"]) for each in solution.outcomes)
-        seconds = max(LEAST_SECONDS, PATIENCE * spent)
-        return Judge(self.folder, self.secret, self.cache, seconds, first.ran)
+        spent = {each["id"]: PATIENCE * float(each["cpu"]) for each in solution.outcomes}
+        seconds = max(LEAST_PATIENT, sum(spent.values()))
+        seconds_of = {name: max(LEAST_SECONDS, each) for name, each in spent.items()}
+        return Judge(self.folder, self.secret, self.cache, seconds, seconds_of, first.ran)
+
+    @cached_property
+    def entered(self) -> dict[str, frozenset[str]]:
+        """The solution's functions that each check enters, by the check's id."""
+        verdict = self.judge.judge(Job(self.source, trace=True, patient=True))
+        return {each["id"]: frozenset(each["entered"]) for each in verdict.outcomes}
+
+    def unreached(self, text: str) -> tuple[str, ...]:
+        """Checks that enter no function in which a text differs from the solution.
+
+        What such a check runs is the solution, so that it passes.
+        """
+        changed = changed_functions(self.source, text)
+        return () if changed is None else self._not_entering(changed)
+
+    def unreached_by(self, mutant: AutoMutant) -> tuple[str, ...]:
+        """The same for an automatic mutant, whose function is known."""
+        names = mutant.function.split(".")
+        around = {".".join(names[:count]) for count in range(1, len(names) + 1)}
+        changed = self._functions & around  # of a function in a function, the outer one
+        return self._not_entering(changed) if changed else ()
+
+    @cached_property
+    def _functions(self) -> frozenset[str]:
+        return function_names(self.source)
+
+    def _not_entering(self, changed: Set[str]) -> tuple[str, ...]:
+        return tuple(check for check, entered in self.entered.items() if not entered & changed)
 
     @cached_property
     def solution_verdict(self) -> Verdict:
@@ -139,17 +173,22 @@ class AssignmentBuild:
     def mutant_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each named mutant that can be applied."""
         texts = {m.name: m.apply(self.source) for m in self.mutants}
-        return self._judge_all("mutants", texts)
+        known = self.public_from.mutant_verdicts if self.public_from else {}
+        return self._judge_all("mutants", texts, known)
 
     @cached_property
     def alternative_verdicts(self) -> dict[str, Verdict]:
         """What becomes of each alternative."""
-        return self._judge_all("alternatives", self.alternatives)
+        known = self.public_from.alternative_verdicts if self.public_from else {}
+        return self._judge_all("alternatives", self.alternatives, known)
 
     @cached_property
     def automatic_verdicts(self) -> list[Verdict]:
         """What becomes of each automatic mutant, up to the first check that notices it."""
-        jobs = [Job(each.text, first=True) for each in self.automatic]
+        jobs = [
+            Job(each.text, first=True, task=each.task, passed=self.unreached_by(each))
+            for each in self.automatic
+        ]
         return self.judge_jobs("automatic mutants", jobs)
 
     def judge_jobs(self, title: str, jobs: Sequence[Job]) -> list[Verdict]:
@@ -159,6 +198,20 @@ class AssignmentBuild:
         with self.bar(f"{self.manifest.id} {title}", len(jobs)) as done:
             return self.judge.judge_all(jobs, done)
 
-    def _judge_all(self, title: str, texts: Mapping[str, str]) -> dict[str, Verdict]:
-        verdicts = self.judge_jobs(title, [Job(text) for text in texts.values()])
-        return dict(zip(texts, verdicts, strict=True))
+    def _judge_all(
+        self, title: str, texts: Mapping[str, str], known: Mapping[str, Verdict]
+    ) -> dict[str, Verdict]:
+        """The verdicts; outcomes of public checks from ``known``, where it is not empty."""
+        public = {check.id for check in self.checks if check.visibility == "public"}
+        before = {name: known.get(name, Verdict(())).of(public) for name in texts}
+        jobs = [
+            Job(
+                text,
+                passed=(*before[name].passed, *self.unreached(text)),
+                failed=before[name].lost,
+                patient=True,
+            )
+            for name, text in texts.items()
+        ]
+        verdicts = dict(zip(texts, self.judge_jobs(title, jobs), strict=True))
+        return {name: before[name].followed_by(verdict) for name, verdict in verdicts.items()}

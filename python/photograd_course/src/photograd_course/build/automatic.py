@@ -28,6 +28,7 @@ class AutoMutant:
             be made a second time in such a line of the function.
         number: of the line, for messages only; what identifies the mutant is the rest.
         text: the whole module with the change.
+        task: of the solution that it is in.
     """
 
     function: str
@@ -35,6 +36,7 @@ class AutoMutant:
     mutation: str
     number: int
     text: str
+    task: str
 
 
 def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
@@ -44,32 +46,28 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
         RegionError: a marker is wrong.
     """
     regions = [r for r in find_regions(source, file) if r.kind == "solution"]
-    owners = [part.function for part in solution_parts(source, file)]
+    parts = solution_parts(source, file)
     text = _Text(source)
     found: list[AutoMutant] = []
     times: Counter[tuple[str, str, str]] = Counter()
-    seen = {ast.dump(ast.parse(source))}
-    own = {node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
-    for node in _changeable(ast.parse(source)):
+    tree = ast.parse(source)
+    parsed = _Parsed(source, tree)
+    own = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    for node in _changeable(tree):
         line = getattr(node, "lineno", 0)
-        where = [o for r, o in zip(regions, owners, strict=True) if r.first < line < r.last]
+        where = [p for r, p in zip(regions, parts, strict=True) if r.first < line < r.last]
         if not where:
             continue
         changes = statements_of(node) if isinstance(node, ast.stmt) else expressions_of(node, own)
         for old, new in changes:
             written = f"({new})" if isinstance(node, ast.expr) else new
             mutated = text.replace(node, written)
-            try:
-                dump = ast.dump(ast.parse(mutated))
-            except SyntaxError:
+            if not parsed.is_new(mutated, line):
                 continue
-            if dump in seen:
-                continue
-            seen.add(dump)
-            place = (where[0], text.line(line), f"{old} -> {new}")
+            place = (where[0].function, text.line(line), f"{old} -> {new}")
             times[place] += 1
             again = f" [{times[place]}]" if times[place] > 1 else ""
-            found.append(AutoMutant(*place[:2], place[2] + again, line, mutated))
+            found.append(AutoMutant(*place[:2], place[2] + again, line, mutated, where[0].task))
     return found
 
 
@@ -92,6 +90,38 @@ def _is_docstring(node: ast.AST) -> bool:
         and isinstance(node.value, ast.Constant)
         and isinstance(node.value.value, str)
     )
+
+
+class _Parsed:
+    """The trees of the texts so far, told apart by the statement of the module that differs."""
+
+    def __init__(self, source: str, tree: ast.Module) -> None:
+        self._lines = len(source.splitlines())
+        self._spans = [
+            (
+                min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", ()))]),
+                end,
+            )
+            for node in tree.body
+            if (end := node.end_lineno) is not None
+        ]
+        self._seen = {
+            (span, ast.dump(node)) for span, node in zip(self._spans, tree.body, strict=True)
+        }
+
+    def is_new(self, text: str, line: int) -> bool:
+        """Whether a text that differs at this line is Python, and differs from all before."""
+        first, last = next(span for span in self._spans if span[0] <= line <= span[1])
+        lines = text.splitlines(keepends=True)
+        part = "".join(lines[first - 1 : len(lines) - (self._lines - last)])
+        try:
+            (statement,) = ast.parse(part).body
+        except (SyntaxError, ValueError):
+            return False
+        key = ((first, last), ast.dump(statement))
+        is_new = key not in self._seen
+        self._seen.add(key)
+        return is_new
 
 
 class _Text:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..cli.failures import complain
@@ -55,8 +55,9 @@ def build_command(request: Request) -> bool:
     for name, folder in folders.items():
         if request.update_hints:
             write_hints(folder, public_hints(build_of(folder, root=root, bar=bar)))
-        build = build_of(folder, root=root, secret=secret, bar=bar)
-        bad = findings(build_of(folder, root=root, bar=bar)) or seed_findings(build)
+        judged = build_of(folder, root=root, bar=bar)
+        build = replace(judged, secret=secret, public_from=judged)
+        bad = findings(judged) or seed_findings(build)
         if not bad:
             trees[name] = make_products(build, read_wheels(request.wheels)).files()
         found += bad

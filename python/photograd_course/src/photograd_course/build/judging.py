@@ -1,17 +1,17 @@
-"""Judge many texts of a module: a process each, two at a time, results kept by content."""
+"""Judge many texts of a module: two at a time, results kept by content."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from ..assignment.check_files import check_files
 from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
 from ..errors import Error, message
+from .judging_process import Program
 
 WORKERS = 2
 WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
@@ -53,6 +54,15 @@ class Verdict:
         """Ids of the checks that are passed."""
         return tuple(each["id"] for each in self.outcomes if each["status"] == "passed")
 
+    def of(self, checks: Collection[str]) -> Verdict:
+        """The part about some checks, by id."""
+        outcomes = tuple(each for each in self.outcomes if each["id"] in checks)
+        return Verdict(outcomes, tuple(each for each in self.hung if each in checks))
+
+    def followed_by(self, other: Verdict) -> Verdict:
+        """Both, about different checks."""
+        return Verdict((*self.outcomes, *other.outcomes), (*self.hung, *other.hung))
+
     @property
     def ours(self) -> tuple[dict[str, Any], ...]:
         """Outcomes that are our own fault: a check that falters on a wrong answer."""
@@ -61,12 +71,19 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Job:
-    """One text to judge; see `judge_program.judge`."""
+    """One text to judge; see `judge_program.judge`.
+
+    `patient`: it may be slower than the solution; each check has the time of all of them.
+    `trace`: the verdict tells which functions each check enters.
+    """
 
     text: str
     first: bool = False
+    task: str = ""
     passed: tuple[str, ...] = ()
     failed: tuple[str, ...] = ()
+    patient: bool = False
+    trace: bool = False
 
 
 @dataclass
@@ -77,7 +94,8 @@ class Judge:
         folder: its source.
         secret: seeds of hidden checks.
         cache: a folder for results, or None.
-        seconds: of processor time for one text; more counts as an endless loop.
+        seconds: of processor time for one check; more counts as an endless loop.
+        seconds_of: the same, by id, for checks that have a time of their own.
         ran: how many texts were run rather than found in the cache.
     """
 
@@ -85,6 +103,7 @@ class Judge:
     secret: bytes = RULES_SECRET
     cache: Path | None = None
     seconds: float = 60.0
+    seconds_of: Mapping[str, float] = field(default_factory=dict)
     ran: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _known: str = ""
@@ -95,13 +114,46 @@ class Judge:
         Raises:
             Error: the judging itself does not work; no fault of the text.
         """
+        return self.judge_all([job])[0]
+
+    def judge_all(
+        self, jobs: Sequence[Job], done: Callable[[int], None] | None = None
+    ) -> list[Verdict]:
+        """The verdicts, in the order of the jobs; ``done`` hears how many there are.
+
+        Raises:
+            Error: the judging itself does not work; no fault of the texts.
+        """
+        finished = 0
+        programs: SimpleQueue[Program] = SimpleQueue()
+
+        def one(job: Job) -> Verdict:
+            nonlocal finished
+            program = programs.get()
+            try:
+                verdict = self._judge(job, program)
+            finally:
+                programs.put(program)
+            with self._lock:
+                finished += 1
+                if done is not None:
+                    done(finished)
+            return verdict
+
+        with ExitStack() as stack:
+            for _ in range(WORKERS):
+                programs.put(stack.enter_context(Program(self.folder, self.secret)))
+            pool = stack.enter_context(ThreadPoolExecutor(WORKERS))
+            return list(pool.map(one, jobs))
+
+    def _judge(self, job: Job, program: Program) -> Verdict:
         place = None
         if self.cache is not None:
             key = hashlib.sha256(f"{self._stem()}|{job!r}".encode()).hexdigest()
             place = self.cache / key[:2] / f"{key}.json"
             if place.exists():
                 return _from_json(place.read_bytes())
-        verdict = self._run(job)
+        verdict = self._run(job, program)
         with self._lock:
             self.ran += 1
         if place is not None:
@@ -110,31 +162,13 @@ class Judge:
             atomic_write(place, json.dumps(record, default=str).encode())
         return verdict
 
-    def judge_all(
-        self, jobs: Sequence[Job], done: Callable[[int], None] | None = None
-    ) -> list[Verdict]:
-        """The verdicts, in the order of the jobs; ``done`` hears how many there are."""
-        finished = 0
-
-        def one(job: Job) -> Verdict:
-            nonlocal finished
-            verdict = self.judge(job)
-            with self._lock:
-                finished += 1
-                if done is not None:
-                    done(finished)
-            return verdict
-
-        with ThreadPoolExecutor(WORKERS) as pool:
-            return list(pool.map(one, jobs))
-
-    def _run(self, job: Job) -> Verdict:
+    def _run(self, job: Job, program: Program) -> Verdict:
         outcomes: list[dict[str, Any]] = []
         hung: list[str] = []
         failed = list(job.failed)
         passed = list(job.passed)
         while True:
-            found, running = self._process(job, passed, failed)
+            found, running = self._once(replace(job, passed=(*passed,), failed=(*failed,)), program)
             outcomes += found
             if running is None:
                 return Verdict(tuple(outcomes), tuple(hung))
@@ -144,41 +178,19 @@ class Judge:
             passed += [each["id"] for each in found if each["status"] == "passed"]
             failed += [each["id"] for each in found if each["status"] != "passed"] + [running]
 
-    def _process(
-        self, job: Job, passed: Sequence[str], failed: Sequence[str]
-    ) -> tuple[list[dict[str, Any]], str | None]:
-        """Outcomes of one process, and the check in which it hung or died."""
-        order = {
-            "folder": str(self.folder),
-            "secret": self.secret.hex(),
-            "text": job.text,
-            "first": job.first,
-            "seconds": self.seconds,
-            "passed": list(passed),
-            "failed": list(failed),
-        }
-        program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
-        try:
-            ended = subprocess.run(
-                program,
-                input=json.dumps(order).encode(),
-                timeout=WALL * self.seconds,
-                check=False,
-                capture_output=True,
-                env=_environment(),
-            )
-            written, problem = ended.stdout, ended.stderr.decode(errors="replace")
-        except subprocess.TimeoutExpired as error:
-            written, problem = error.stdout or b"", "no answer in time"
-        lines = [json.loads(line) for line in written.split(b"\n")[:-1]]
+    def _once(self, job: Job, program: Program) -> tuple[list[dict[str, Any]], str | None]:
+        """Outcomes of one run, and the check in which it hung or died."""
+        seconds_of = {} if job.patient else dict(self.seconds_of)
+        order = {**asdict(job), "seconds": self.seconds, "seconds_of": seconds_of}
+        lines, problem = program.run(order, WALL * self.seconds)
         outcomes = [line for line in lines if "status" in line]
-        if lines and "end" in lines[-1]:
+        if any("end" in line for line in lines):
             return outcomes, None
         begun = [line["begins"] for line in lines if "begins" in line]
         finished = {each["id"] for each in outcomes}
-        open_ones = [each for each in begun if each not in finished and each not in failed]
+        open_ones = [each for each in begun if each not in finished and each not in job.failed]
         if not open_ones:
-            got = f"an end before the first: {problem[-2000:]}"
+            got = f"an end before the first: {problem}"
             raise Error(message("judge", self.folder.name, "an outcome of each check", got))
         return outcomes, open_ones[-1]
 
@@ -200,11 +212,6 @@ class Judge:
             parts += brought_sources(self.folder, read_manifest(self.folder)).values()
             self._known = "|".join(parts)
         return self._known
-
-
-def _environment() -> dict[str, str]:
-    """One thread for linear algebra: two processes run at a time, and the bits stay the same."""
-    return {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 def _from_json(data: bytes) -> Verdict:

@@ -2,7 +2,7 @@
 
 For a direction v the difference quotient is D = (L(x + h v) - L(x - h v)) / (2 h), and the gradient
 g must give g.v. Large h costs truncation (h squared), small h costs rounding (1 / h); nobody knows
-the best h beforehand, so six decades are swept and the best one counts.
+the best h beforehand, so six decades are swept, from the middle outwards, until one agrees.
 
 The error is relative to the norm of the whole probe vector. A cosine would hide wrong factors, an
 absolute tolerance would pass zeros, and `error <= tolerance` fails for NaN as it should.
@@ -10,7 +10,8 @@ absolute tolerance would pass zeros, and `error <= tolerance` fails for NaN as i
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,8 @@ from .probes import (
     named_outputs,
 )
 from .reports import GradientReport, GroupReport
+
+Probe = tuple[NDArray[np.int64] | None, Float64]  # (flat index, or None for a dense one; direction)
 
 STEPS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 """The default sweep, in units of the root mean square of each group."""
@@ -62,7 +65,8 @@ def check_gradient(
         tolerance: largest norm-relative error; 1e-6 suits smooth functions in float64.
         directions, coordinates: probes per group; half of the coordinates are drawn where the
             gradient is not zero, so that a sparse gradient is not tested on its zeros alone.
-        steps: the sweep, relative to the root mean square of each group.
+        steps: the sweep, relative to the root mean square of each group. The middle ones are tried
+            first, and a group is done with the first that agrees.
         may_be_zero: groups whose gradient is rightly zero here; both sides must then be zero.
 
     Returns:
@@ -85,12 +89,9 @@ def check_gradient(
     groups = []
     for number, (name, slope) in enumerate(gradients.items()):
         probes = _draw_probes(slope, seed, number, directions, coordinates)
-        differences = [
-            _differences(function, cotangents, copies, name, probes, step) for step in steps
-        ]
-        groups.append(
-            _judge(name, slope, probes, steps, differences, tolerance, dead, name in may_be_zero)
-        )
+        measure = partial(_differences, function, cotangents, copies, name, probes)
+        differences = _sweep(measure, slope, probes, steps, tolerance)
+        groups.append(_judge(name, slope, differences, tolerance, dead, name in may_be_zero))
     return GradientReport(tuple(groups), tolerance, seed)
 
 
@@ -107,9 +108,9 @@ def _dead_output(outputs: Outputs) -> str:
 
 def _draw_probes(
     slope: Float64, seed: int, number: int, directions: int, coordinates: int
-) -> list[tuple[NDArray[np.int64] | None, Float64]]:
+) -> list[Probe]:
     """Probe vectors: (None, dense direction) and (flat index, ones) for single coordinates."""
-    probes: list[tuple[NDArray[np.int64] | None, Float64]] = [
+    probes: list[Probe] = [
         (None, draw_like(slope.shape, seed=seed, stream=number, lane=lane))
         for lane in range(directions)
     ]
@@ -126,7 +127,7 @@ def _differences(
     cotangents: Outputs,
     parameters: Arrays,
     name: str,
-    probes: list[tuple[NDArray[np.int64] | None, Float64]],
+    probes: list[Probe],
     step: float,
 ) -> Float64:
     """The central difference quotient along every probe, for one group and one step."""
@@ -145,31 +146,45 @@ def _differences(
     return np.array(quotients)
 
 
-def _judge(
-    name: str,
+def _sweep(
+    measure: Callable[[float], Float64],
     slope: Float64,
-    probes: list[tuple[NDArray[np.int64] | None, Float64]],
-    steps: tuple[float, ...],
-    differences: list[Float64],
+    probes: Sequence[Probe],
+    steps: Sequence[float],
     tolerance: float,
-    dead: str,
-    may_be_zero: bool,
-) -> GroupReport:
+) -> dict[float, tuple[Float64, float]]:
+    """Differences and their error by step, from the coarsest on, of the steps that were tried."""
     flat = slope.reshape(-1)
     expected = np.array(
         [np.sum(slope * v) if index is None else flat[index[0]] for index, v in probes]
     )
     dense = np.array([index is None for index, _ in probes])
-    curve = tuple(
-        (step, max_error(found, expected, dense))
-        for step, found in zip(steps, differences, strict=True)
-    )
-    best_step, error = steps[0], np.inf
+    middle = (len(steps) - 1) / 2
+    tried = {}
+    for number in sorted(range(len(steps)), key=lambda number: abs(number - middle)):
+        found = measure(steps[number])
+        tried[number] = (found, max_error(found, expected, dense))
+        if tried[number][1] <= tolerance:
+            break
+    return {steps[number]: tried[number] for number in sorted(tried)}
+
+
+def _judge(
+    name: str,
+    slope: Float64,
+    differences: Mapping[float, tuple[Float64, float]],
+    tolerance: float,
+    dead: str,
+    may_be_zero: bool,
+) -> GroupReport:
+    flat = slope.reshape(-1)
+    curve = tuple((step, error) for step, (_, error) in differences.items())
+    best_step, error = curve[0][0], np.inf
     for step, candidate in curve:
         if candidate < error:  # False for NaN, so that NaN never becomes the best
             best_step, error = step, candidate
     norm = float(np.linalg.norm(flat))
-    zero = not slope.any() and any(not found.any() for found in differences)
+    zero = not slope.any() and any(not found.any() for found, _ in differences.values())
     reason = dead
     if not reason and not np.isfinite(slope).all():
         reason = "the gradient is not finite"

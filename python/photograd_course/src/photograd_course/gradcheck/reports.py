@@ -13,7 +13,8 @@ class GroupReport:
         name: the group.
         error: norm-relative error at the best step, |fd - g| / max(|fd|, |g|); inf if none worked.
         best_step: that step, in units of the group's root mean square.
-        curve: (step, error) of the sweep, shaped like a V: rounding left, truncation right.
+        curve: (step, error) of the steps that were tried, coarse to fine; all of them where none
+            agrees.
         gradient_norm: Euclidean norm of the gradient under test.
         passed: the verdict.
         reason: why it failed, or an empty string.

@@ -27,7 +27,13 @@ def check_sole(build: AssignmentBuild) -> Iterator[str]:
 def _alone(build: AssignmentBuild, check: Check) -> bool:
     pairs = zip(build.automatic, build.automatic_verdicts, strict=True)
     jobs = [
-        Job(mutant.text, first=True, passed=verdict.passed, failed=verdict.lost)
+        Job(
+            mutant.text,
+            first=True,
+            task=mutant.task,
+            passed=(*verdict.passed, *build.unreached_by(mutant)),
+            failed=verdict.lost,
+        )
         for mutant, verdict in pairs
         if verdict.lost == (check.id,)
     ]
