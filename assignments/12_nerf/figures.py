@@ -73,7 +73,7 @@ def fig2_encoding(module):
     inside, between = np.array(errors).T
     facts = {
         "four bands are more than 8 dB better than none": Fact(
-            scores[2] - scores[0], 8, 40, red="encoding_bands_linear"
+            scores[2] - scores[0], 8, 40, red="backward_no_relu"
         ),
         "at pixels in training more bands are better": Fact(
             inside[0] < inside[1] < inside[2] < inside[3], red="backward_no_relu"
