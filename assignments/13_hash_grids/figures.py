@@ -82,7 +82,7 @@ def fig2_leaves(module: ModuleType) -> tuple[Figure, Facts]:
 def fig3_rows(module: ModuleType) -> tuple[Figure, Facts]:
     """The rows of the corners of a dense level and of a hashed one, and how many share each."""
     rows = 256
-    dense = module.hash_index(parts.corner_list(15), 15, rows)
+    dense = module.hash_index(parts.corner_list(16), 16, 17 * 17)
     hashed = module.hash_index(parts.corner_list(40), 40, rows)
     often = np.bincount(hashed, minlength=rows)
     shared = int(hashed[40 * 20 + 8])
@@ -90,20 +90,20 @@ def fig3_rows(module: ModuleType) -> tuple[Figure, Facts]:
     apart = np.abs(same[:, None] - same).max(axis=2)
     facts: Facts = {
         "dense: each corner has a row of its own": Fact(
-            len(np.unique(dense)) == rows, red="hash_always"
+            len(np.unique(dense)) == 17 * 17, red="hash_always"
         ),
         "hashed: they lie far apart": Fact(
-            apart[apart > 0].min(initial=99), 3, 40, red="hash_modulus_first"
+            apart[apart > 0].min(initial=99), 3, 40, held="what a hash is for"
         ),
         "no row has more than three times the mean": Fact(
-            often.max() / often.mean(), 1.0, 3.0, red="hash_added"
+            often.max() / often.mean(), 1.0, 3.0, held="what a hash is for"
         ),
     }
     figure, (left, center, right) = subplots(7.0, 2.6, 1, 3)
-    for axes, index, n in ((left, dense, 16), (center, hashed, 41)):
-        axes.imshow(index.reshape(n, n), cmap="viridis", vmin=0, vmax=rows - 1)
+    for axes, index, n in ((left, dense, 17), (center, hashed, 41)):
+        axes.imshow(index.reshape(n, n), cmap="viridis", vmin=0, vmax=index.max())
         axes.set(xticks=[], yticks=[])
-    left.set_title("dense: 16 x 16 corners")
+    left.set_title("dense: 17 x 17 corners")
     center.set_title("hashed: 41 x 41 corners")
     center.plot(*same.T, "s", markerfacecolor="none", markeredgecolor=CRIMSON, markersize=6)
     right.bar(np.arange(often.max() + 1), np.bincount(often), color=BLUE)
@@ -199,9 +199,11 @@ def fig5_shared(module: ModuleType) -> tuple[Figure, Facts]:
             red="backward_last_point_counts",
         ),
         "less than half of what the terms are together": Fact(
-            abs(d_table[row, 0]) / total[row], 0.0, 0.5, red="backward_mean_of_row"
+            abs(d_table[row, 0]) / total[row], 0.0, 0.5, red="hash_never"
         ),
-        "they come from several places": Fact(np.count_nonzero(by_corner), 4, 20, red="hash_never"),
+        "they come from several places": Fact(
+            np.count_nonzero(by_corner), 4, 20, held="what sharing a row means"
+        ),
     }
     figure, (left, right) = subplots(7.0, 3.3, 1, 2, width_ratios=(1, 1.2))
     left.imshow(0.5 + 0.5 * parts.as_picture(target), extent=(0, 1, 1, 0))
@@ -255,13 +257,13 @@ def fig6_size(module: ModuleType) -> tuple[Figure, Facts]:
         plain_axes(axes)
     facts: Facts = {
         "a fourth of the rows costs less than 6 dB": Fact(
-            max(drops), 0.0, 6.0, red="encode_levels_share_rows"
+            max(drops), 1.0, 6.0, red="train_table_fixed"
         ),
         "at equal time better by more than 4 dB": Fact(
             min(gains), 4.0, 30.0, red="train_table_fixed"
         ),
         "at equal size the network is better after four times the time, by less than 3 dB": Fact(
-            max(ahead), 0.0, 3.0, red="encode_levels_share_rows"
+            max(ahead), 0.0, 3.0, red="train_table_fixed"
         ),
     }
     return figure, facts

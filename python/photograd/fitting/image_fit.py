@@ -201,7 +201,11 @@ class ImageFit:
         return loss
 
     def save(self, folder: Path) -> None:
-        """Write DIR/image.npz atomically."""
+        """Write DIR/image.npz atomically.
+
+        Args:
+            folder: DIR, which exists.
+        """
         meta = {
             "step": self.step_number,
             "policy": asdict(self.field.policy),
@@ -217,6 +221,9 @@ class ImageFit:
 
     def load(self, folder: Path) -> None:
         """Take what `save` wrote.
+
+        Args:
+            folder: that `save` was given.
 
         Raises:
             IoError: a damaged checkpoint.

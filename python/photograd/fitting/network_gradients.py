@@ -116,8 +116,8 @@ def _sheet(steps: list[int], titles: list[str], title: str, caption: str) -> Fig
         figure = style.new_figure(width, TOP + len(steps) * (PANEL + GAP + BELOW) + bottom)
         for k, step in enumerate(steps):
             for n, name in enumerate(titles):
-                place = LEFT + n * (PANEL + GAP), TOP + k * (PANEL + GAP + BELOW)
-                axes = style.place_axes(figure, *place, PANEL, PANEL)
+                corner = LEFT + n * (PANEL + GAP), TOP + k * (PANEL + GAP + BELOW)
+                axes = style.place_axes(figure, *corner, PANEL, PANEL)
                 axes.set(xticks=[], yticks=[])
                 if k == 0:
                     axes.set_title(name, fontsize="small")

@@ -28,15 +28,15 @@ def require_bounded(
     for name, part in parts.items():
         if float(np.abs(params[name]).max(initial=0.0)) <= LIMIT:  # false for NaN
             continue
-        for place, values in _places(part, params[name]):
+        for part_name, values in _named_parts(part, params[name]):
             largest = float(np.abs(values).max(initial=0.0))
             if not largest <= LIMIT:
                 expected = f"numbers within +- {LIMIT:g}"
                 remedy = "the descent has exploded: lower the learning rate"
-                raise Error(message(function, f"{name}, {place}", expected, largest, remedy))
+                raise Error(message(function, f"{name}, {part_name}", expected, largest, remedy))
 
 
-def _places(part: Perceptron | HashEncoding, values: Array) -> Iterator[tuple[str, Array]]:
+def _named_parts(part: Perceptron | HashEncoding, values: Array) -> Iterator[tuple[str, Array]]:
     if isinstance(part, HashEncoding):
         for number, level in enumerate(part.levels):
             where = f"level {number} ({level.resolution} cells)"
