@@ -4,11 +4,16 @@ import numpy as np
 from photograd_course.grading import Array, Items, Number, Subject, checks_for
 from photograd_course.grading.adjoint_gate import random_cotangent
 
-from ..common import TASK_3, nodes, scene_of
+from ..common import TASK_3, furnace, nodes, scene_of
 from ..task_6 import GATE, slopes
 from .common import estimated, looked_at, mixed_room
 
 check = checks_for(calls=("direct_light_backward",), visibility="hidden")
+
+
+def surrounded(t, n):
+    """Arguments of `direct_light_backward`, for n rows whose samples all hit an emitter."""
+    return *furnace(t, n), *t.rng.random((2, n, 3)), random_cotangent(t.rng, (n, 3))
 
 
 @check(
@@ -22,7 +27,8 @@ check = checks_for(calls=("direct_light_backward",), visibility="hidden")
             "direct_light_backward",
             lambda t, n: (*estimated(t, n), random_cotangent(t.rng, (n, 3))),
             lambda _: Items(Array((5, 3)), Array((5,))),
-        )
+        ),
+        Subject("direct_light_backward", surrounded, lambda _: Items(Array((7, 3)), Array((7,)))),
     ],
 )
 def the_gradient_of_a_room(t):
