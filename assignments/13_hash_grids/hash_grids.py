@@ -221,9 +221,9 @@ def finetune(leaf, values, points, target, steps, rate):
     rows = read_leaves(leaf, np.arange(len(values)), points)
     m = v = np.zeros(values.shape)
     for k in range(steps):
-        d_values = np.zeros(values.shape)
-        np.add.at(d_values, rows, 2 * (values[rows] - target) / target.size)
-        values, m, v = adam_rows(values, d_values, m, v, k + 1, rate)
+        d_leaves = np.zeros(values.shape)
+        np.add.at(d_leaves, rows, 2 * (values[rows] - target) / target.size)
+        values, m, v = adam_rows(values, d_leaves, m, v, k + 1, rate)
     return values
 
 

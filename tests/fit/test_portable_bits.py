@@ -53,6 +53,5 @@ def test_the_same_bits_without_any_instruction_that_can_be_switched_off(tmp_path
     plain, bare = digests(folder), json.loads(other.stdout)
     same = plain.pop("of the processor") == bare.pop("of the processor")
     assert same != ("X86_V3" in features)  # the switches do something
-    assert len(plain) == 10
     assert plain == bare
     assert np.unique(list(plain.values())).size == len(plain)

@@ -34,7 +34,7 @@ def training_in_random_cases(t):
             t.close("decoder", mine, theirs)
 
 
-def decibels(got, right):
+def psnr(got, right):
     return -10 * np.log10(max(float(np.mean((got - right) ** 2)), 1e-30))
 
 
@@ -55,7 +55,7 @@ def the_hash_grid_wins_and_loses_gracefully(t):
     weights, octaves = ref.start_weights((22, 64, 64, 3), t.rng), 5
     batches = t.rng.integers(0, len(points), (4 * steps, 500))
     weights, _ = ref.train_network(points, target, batches, octaves, weights, 0.006)
-    plain = decibels(ref.network(weights, ref.frequencies(points, octaves)), target)
+    plain = psnr(ref.network(weights, ref.frequencies(points, octaves)), target)
 
     scores = []
     for most in (2**12, 2**10):
@@ -64,7 +64,7 @@ def the_hash_grid_wins_and_loses_gracefully(t):
         decoder = ref.start_weights((8, 16, 3), t.rng)
         given = points, target, batches[:steps], levels, table, decoder, 0.03
         table, decoder, _ = trained(t, *given)
-        scores.append(decibels(ref.network(decoder, ref.encode(points, table, levels)), target))
+        scores.append(psnr(ref.network(decoder, ref.encode(points, table, levels)), target))
     size = table.size + ref.numbers_per_point(decoder)
     t.require(size <= ref.numbers_per_point(weights), "the smaller table is not small enough")
     large, small = scores
