@@ -68,8 +68,8 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
           std::int32_t first_face, py::array face, py::array barycentrics, py::array depth,
           const py::object& stencil, const py::object& overdraw) {
     ArrayArgs args("rasterize");
-    std::int32_t* seen = args.out<std::int32_t>("face", face, "H W");
-    VisibilityBuffers out{seen,
+    std::int32_t* numbers = args.out<std::int32_t>("face", face, "H W");
+    VisibilityBuffers out{numbers,
                           args.out<double>("barycentrics", barycentrics, "H W 2"),
                           args.out<double>("depth", depth, "H W"),
                           nullptr,
@@ -104,31 +104,31 @@ void draw_backward(const py::array& positions, const py::array& faces, const py:
                    const py::array& d_barycentrics, const py::array& d_depth,
                    py::array d_positions) {
     ArrayArgs args("rasterize_backward");
-    const std::int32_t* seen = args.in<std::int32_t>("face", face, "H W");
+    const std::int32_t* numbers = args.in<std::int32_t>("face", face, "H W");
     const ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
                                     static_cast<int>(args.size("W")));
     const double* d_b = args.in<double>("d_barycentrics", d_barycentrics, "H W 2");
     const double* d_z = args.in<double>("d_depth", d_depth, "H W");
     double* d_out = args.out<double>("d_positions", d_positions, "V 3");
     const py::gil_scoped_release release;
-    rasterize_backward(mesh, seen, d_b, d_z, d_out);
+    rasterize_backward(mesh, numbers, d_b, d_z, d_out);
 }
 
-SeenFaces seen_of(ArrayArgs& args, const py::array& faces, const py::array& face,
-                  const py::array& barycentrics) {
-    const std::int32_t* seen = args.in<std::int32_t>("face", face, "P");
+VisibleFaces visible_of(ArrayArgs& args, const py::array& faces, const py::array& face,
+                        const py::array& barycentrics) {
+    const std::int32_t* numbers = args.in<std::int32_t>("face", face, "P");
     const double* b = args.in<double>("barycentrics", barycentrics, "P 2");
-    return {{seen, static_cast<std::size_t>(face.size())}, b, faces_of(args, faces)};
+    return {{numbers, static_cast<std::size_t>(face.size())}, b, faces_of(args, faces)};
 }
 
 void blend_attributes(const py::array& attributes, const py::array& faces, const py::array& face,
                       const py::array& barycentrics, py::array out) {
     ArrayArgs args("interpolate");
     const double* values = args.in<double>("attributes", attributes, "V C");
-    const SeenFaces seen = seen_of(args, faces, face, barycentrics);
+    const VisibleFaces visible = visible_of(args, faces, face, barycentrics);
     double* to = args.out<double>("out", out, "P C");
     const py::gil_scoped_release release;
-    interpolate(seen, values, args.size("C"), to);
+    interpolate(visible, values, args.size("C"), to);
 }
 
 void blend_attributes_backward(const py::array& attributes, const py::array& faces,
@@ -137,12 +137,12 @@ void blend_attributes_backward(const py::array& attributes, const py::array& fac
                                py::array d_barycentrics) {
     ArrayArgs args("interpolate_backward");
     const double* values = args.in<double>("attributes", attributes, "V C");
-    const SeenFaces seen = seen_of(args, faces, face, barycentrics);
-    const double* d_seen = args.in<double>("d_out", d_out, "P C");
+    const VisibleFaces visible = visible_of(args, faces, face, barycentrics);
+    const double* d_blended = args.in<double>("d_out", d_out, "P C");
     double* d_values = args.out<double>("d_attributes", d_attributes, "V C");
     double* d_b = args.out<double>("d_barycentrics", d_barycentrics, "P 2");
     const py::gil_scoped_release release;
-    interpolate_backward(seen, values, args.size("V"), args.size("C"), d_seen, d_values, d_b);
+    interpolate_backward(visible, values, args.size("V"), args.size("C"), d_blended, d_values, d_b);
 }
 
 void silhouettes(const py::array& positions, const py::array& ends, const py::array& opposite,

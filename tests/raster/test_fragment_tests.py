@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,8 @@ def test_depth(name: Any) -> None:
 
 def test_depth_is_not_written_unless_asked() -> None:
     after = draw(1.0, draw(2.0), face=7, depth_write=False)
-    assert after.face[0, 0] == 7 and after.depth[0, 0] == 2.0
+    assert after.face[0, 0] == 7
+    assert after.depth[0, 0] == 2.0
 
 
 @pytest.mark.parametrize("cull", ["none", "back", "front"])
@@ -55,13 +57,13 @@ def test_faces(cull: Any) -> None:
     # The world's y points up and the image's down: what runs counter-clockwise in the world, seen
     # by the camera, runs counter-clockwise in the picture that is shown.
     for k, front in ((0, False), (1, True)):
-        seen = rasterize(at_depth(2.0), BOTH_WAYS[k : k + 1], PIXEL, RasterOptions(cull=cull))
-        assert seen.seen[0, 0] == (cull != ("front" if front else "back"))
+        visibility = rasterize(at_depth(2.0), BOTH_WAYS[k : k + 1], PIXEL, RasterOptions(cull=cull))
+        assert visibility.covered[0, 0] == (cull != ("front" if front else "back"))
 
 
-@pytest.mark.parametrize("near, far", [(1.0, 3.0), (2.0, 2.0), (2.1, 3.0), (1.0, 1.9)])
+@pytest.mark.parametrize(("near", "far"), [(1.0, 3.0), (2.0, 2.0), (2.1, 3.0), (1.0, 1.9)])
 def test_the_range_of_depths(near: float, far: float) -> None:
-    assert draw(2.0, near=near, far=far).seen[0, 0] == (near <= 2.0 <= far)
+    assert draw(2.0, near=near, far=far).covered[0, 0] == (near <= 2.0 <= far)
 
 
 @pytest.mark.parametrize("name", COMPARES)
@@ -72,18 +74,19 @@ def test_stencil_compares_the_reference_with_what_is_stored(name: Any, mask: int
         before = Visibility.cleared(1, 1, stencil=stored)
         reference, own = 0x13 & mask, stored & mask
         column = 0 if reference < own else 1 if reference == own else 2
-        assert draw(2.0, before, stencil=rules).seen[0, 0] == bool(TABLE[name][column])
+        assert draw(2.0, before, stencil=rules).covered[0, 0] == bool(TABLE[name][column])
 
 
-OPERATIONS = {
-    "keep": lambda s, r: s,
-    "zero": lambda s, r: 0,
-    "replace": lambda s, r: r,
-    "increment_clamp": lambda s, r: min(s + 1, 255),
-    "decrement_clamp": lambda s, r: max(s - 1, 0),
-    "invert": lambda s, r: 255 - s,
-    "increment_wrap": lambda s, r: (s + 1) % 256,
-    "decrement_wrap": lambda s, r: (s - 1) % 256,
+# By name, of what is stored and the reference 0x5A.
+OPERATIONS: dict[str, Callable[[int], int]] = {
+    "keep": lambda stored: stored,
+    "zero": lambda _: 0,
+    "replace": lambda _: 0x5A,
+    "increment_clamp": lambda stored: min(stored + 1, 255),
+    "decrement_clamp": lambda stored: max(stored - 1, 0),
+    "invert": lambda stored: 255 - stored,
+    "increment_wrap": lambda stored: (stored + 1) % 256,
+    "decrement_wrap": lambda stored: (stored - 1) % 256,
 }
 
 
@@ -101,7 +104,7 @@ def test_what_becomes_of_the_stencil(name: Any, mask: int) -> None:
             before = draw(2.0, Visibility.cleared(1, 1, stencil=stored))
             stencil = Stencil(reference=0x5A, write_mask=mask, **{**rules, slot: name})
             after = draw(z, before, stencil=stencil)
-            made = OPERATIONS[name](stored, 0x5A)
+            made = OPERATIONS[name](stored)
             assert after.stencil is not None
             assert after.stencil[0, 0] == (stored & ~mask) | (made & mask), (slot, stored)
 

@@ -31,32 +31,33 @@ def scene(kind: str) -> tuple[Any, Any]:
 def test_every_pixel_agrees_with_the_oracle(kind: str) -> None:
     positions, faces = scene(kind)
     assert (kind == "behind the camera") == bool((positions[:, 2] < 0).any())
-    seen = rasterize(positions, faces, SIZE)
+    visibility = rasterize(positions, faces, SIZE)
     face, weights, depth = oracle.rasterized(positions, faces, SIZE)
-    assert 0.2 < seen.seen.mean() < 1 or kind == "behind the camera"
-    np.testing.assert_array_equal(seen.face, face)
-    np.testing.assert_allclose(seen.barycentrics, weights[..., 1:], atol=1e-9)
-    np.testing.assert_allclose(seen.depth, depth, rtol=1e-9)
+    assert 0.2 < visibility.covered.mean() < 1 or kind == "behind the camera"
+    np.testing.assert_array_equal(visibility.face, face)
+    np.testing.assert_allclose(visibility.barycentrics, weights[..., 1:], atol=1e-9)
+    np.testing.assert_allclose(visibility.depth, depth, rtol=1e-9)
 
 
 def test_the_near_plane_cuts_triangles() -> None:
     positions, faces = scene("sphere")
-    seen = rasterize(positions, faces, SIZE, RasterOptions(near=2.7, far=3.2))
+    visibility = rasterize(positions, faces, SIZE, RasterOptions(near=2.7, far=3.2))
     face, _, depth = oracle.rasterized(positions, faces, SIZE, near=2.7)
     kept = depth <= 3.2
     assert 10 < kept.sum() < (depth < np.inf).sum()
-    np.testing.assert_array_equal(seen.face, np.where(kept, face, -1))
+    np.testing.assert_array_equal(visibility.face, np.where(kept, face, -1))
 
 
 def test_a_point_of_the_image_sees_what_the_rasterizer_sees_there() -> None:
     positions, faces = scene("soup")
-    seen = rasterize(positions, faces, SIZE)
+    visibility = rasterize(positions, faces, SIZE)
     rows, columns = np.indices(SIZE).reshape(2, -1) + 0.5
     face, depth = FaceLookup(positions, faces, SIZE).nearest(np.stack([columns, rows], axis=-1))
-    np.testing.assert_array_equal(face.reshape(SIZE), seen.face)
-    np.testing.assert_array_equal(depth.reshape(SIZE), seen.depth)
+    np.testing.assert_array_equal(face.reshape(SIZE), visibility.face)
+    np.testing.assert_array_equal(depth.reshape(SIZE), visibility.depth)
     outside = FaceLookup(positions, faces, SIZE).nearest([[-1.0, 3.0], [3.0, 20.0]])
-    assert (outside[0] == -1).all() and np.isinf(outside[1]).all()
+    assert (outside[0] == -1).all()
+    assert np.isinf(outside[1]).all()
 
 
 @pytest.mark.parametrize("name", ["sphere", "soup"])
@@ -66,12 +67,12 @@ def test_the_ray_tracer_sees_the_same_but_at_edges(name: str) -> None:
     mesh = Mesh(vertices.astype(np.float32), faces)
     hits = Bvh(mesh).trace(*camera.rays())
     positions = project(mesh.vertices, camera)
-    seen = rasterize(positions, faces, (300, 400))
+    visibility = rasterize(positions, faces, (300, 400))
     other = hits.primitive.reshape(300, 400)
-    differ = other != seen.face
+    differ = other != visibility.face
     assert differ.mean() < 1e-3
     # Where they differ, a neighbor's center sees what the ray saw: an edge is nearer than a pixel.
-    padded = np.pad(seen.face, 1, mode="edge")
+    padded = np.pad(visibility.face, 1, mode="edge")
     near = np.zeros(differ.shape, bool)
     for y, x in np.ndindex(3, 3):
         near |= padded[y : y + 300, x : x + 400] == other
@@ -96,8 +97,8 @@ def grid(count: int, jitter: float) -> tuple[Any, Any]:
 def test_no_gap_and_no_double_hit(jitter: float) -> None:
     # 1025 cells: all corners are centers of pixels, and diagonals run through centers, too.
     positions, faces = grid(1025 if jitter == 0 else 700, jitter)
-    seen = rasterize(positions, faces, (1024, 1024))
-    assert seen.overdraw.min() == seen.overdraw.max() == 1
+    visibility = rasterize(positions, faces, (1024, 1024))
+    assert visibility.overdraw.min() == visibility.overdraw.max() == 1
 
 
 def test_a_shared_edge_at_any_depth_covers_a_pixel_once() -> None:
@@ -110,15 +111,16 @@ def test_a_shared_edge_at_any_depth_covers_a_pixel_once() -> None:
     first = np.stack([i, i + 1, 64 + i], axis=1)
     second = np.stack([i + 1, 65 + i, 64 + i], axis=1)
     faces = np.concatenate([first, second])
-    seen = rasterize(np.concatenate([upper, lower]), faces, (64, 64))
-    inside = seen.overdraw[1:-1, 1:-1]
+    visibility = rasterize(np.concatenate([upper, lower]), faces, (64, 64))
+    inside = visibility.overdraw[1:-1, 1:-1]
     assert inside.min() == inside.max() == 1
 
 
 def test_of_equal_depths_the_first_is_seen() -> None:
     positions = np.array([[0.0, 0, 1], [8, 0, 1], [0, 8, 1]])
-    seen = rasterize(positions, [[0, 1, 2], [0, 1, 2], [2, 0, 1]], (4, 4))
-    assert set(seen.face.ravel()) <= {0, -1} and seen.overdraw.max() == 3
+    visibility = rasterize(positions, [[0, 1, 2], [0, 1, 2], [2, 0, 1]], (4, 4))
+    assert set(visibility.face.ravel()) <= {0, -1}
+    assert visibility.overdraw.max() == 3
 
 
 def test_a_second_mesh_goes_on_in_the_same_buffers() -> None:
@@ -129,18 +131,20 @@ def test_a_second_mesh_goes_on_in_the_same_buffers() -> None:
     both = rasterize(positions, faces[15:], SIZE, onto=first, first_face=15)
     for name, array in vars(whole).items():
         np.testing.assert_array_equal(getattr(both, name), array)
-    assert (first.face < 15).all() and not np.array_equal(first.face, both.face)
+    assert (first.face < 15).all()
+    assert not np.array_equal(first.face, both.face)
 
 
 def test_degenerate_triangles_are_not_drawn_and_leave_no_nan() -> None:
     rng = np.random.default_rng(7)
     corners = rng.integers(-1, 3, (100_000, 3, 3)) * rng.choice([1e-12, 1.0, 1e9], (100_000, 1, 1))
     positions = corners.reshape(-1, 3).astype(float)
-    seen = rasterize(positions, np.arange(300_000).reshape(-1, 3), (4, 4))
-    assert np.isfinite(seen.barycentrics).all() and not np.isnan(seen.depth).any()
+    visibility = rasterize(positions, np.arange(300_000).reshape(-1, 3), (4, 4))
+    assert np.isfinite(visibility.barycentrics).all()
+    assert not np.isnan(visibility.depth).any()
     flat = np.array([[0.0, 0, 1], [4, 4, 1], [2, 2, 1], [1, 1, 1]])
     nothing = rasterize(flat, [[0, 1, 2], [0, 3, 3]], (4, 4))
-    assert not nothing.seen.any()
+    assert not nothing.covered.any()
 
 
 def test_bad_input_is_named() -> None:

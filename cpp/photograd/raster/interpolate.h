@@ -11,18 +11,18 @@
 namespace photograd {
 
 /// What pixels see of a mesh with F faces; numbers outside of [0, F) see nothing.
-struct SeenFaces {
+struct VisibleFaces {
     std::span<const std::int32_t> face;  // (P,)
     const double* barycentrics;          // (P, 2)
     std::span<const std::uint32_t> faces;
 };
 
 /// attributes (V, C) to out (P, C).
-void interpolate(const SeenFaces& seen, const double* attributes, std::int64_t channels,
+void interpolate(const VisibleFaces& visible, const double* attributes, std::int64_t channels,
                  double* out);
 /// Adds to d_attributes (V, C) and writes d_barycentrics (P, 2).
-void interpolate_backward(const SeenFaces& seen, const double* attributes, std::int64_t vertices,
-                          std::int64_t channels, const double* d_out, double* d_attributes,
-                          double* d_barycentrics);
+void interpolate_backward(const VisibleFaces& visible, const double* attributes,
+                          std::int64_t vertices, std::int64_t channels, const double* d_out,
+                          double* d_attributes, double* d_barycentrics);
 
 }  // namespace photograd

@@ -26,9 +26,9 @@ bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out
         stencil.apply(stencil.fail, out.stencil[pixel]);
         return false;
     }
-    const bool seen = passes(rules.depth, z, out.depth[pixel]);
-    if (out.stencil) stencil.apply(seen ? stencil.pass : stencil.depth_fail, out.stencil[pixel]);
-    return seen;
+    const bool nearer = passes(rules.depth, z, out.depth[pixel]);
+    if (out.stencil) stencil.apply(nearer ? stencil.pass : stencil.depth_fail, out.stencil[pixel]);
+    return nearer;
 }
 
 void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
@@ -92,9 +92,9 @@ void rasterize_backward(const ScreenMesh& mesh, const std::int32_t* face,
     parallel_for(mesh.height, [&](std::int64_t y) {
         for (std::int64_t x = 0; x < mesh.width; ++x) {
             const auto pixel = static_cast<std::size_t>(y * mesh.width + x);
-            const bool seen = face[pixel] >= 0 && face[pixel] < faces;
-            owner[pixel] = static_cast<std::uint32_t>(seen ? face[pixel] : faces);
-            if (!seen) continue;
+            const bool visible = face[pixel] >= 0 && face[pixel] < faces;
+            owner[pixel] = static_cast<std::uint32_t>(visible ? face[pixel] : faces);
+            if (!visible) continue;
             const Vec3<double> v[3] = {mesh.corner(owner[pixel], 0), mesh.corner(owner[pixel], 1),
                                        mesh.corner(owner[pixel], 2)};
             const auto edges = TriangleEdges<double>::of(v[0], v[1], v[2]);

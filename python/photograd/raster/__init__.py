@@ -1,9 +1,9 @@
 """A differentiable rasterizer: triangles to pictures, and gradients through their edges.
 
     positions = project(mesh.vertices, camera)              # homogeneous pixels
-    seen = rasterize(positions, mesh.faces, (height, width))  # the visibility buffer
-    color = interpolate(vertex_colors, mesh.faces, seen)
-    crossings = find_crossings(positions, mesh.faces, seen, MeshEdges.of(mesh.faces))
+    visibility = rasterize(positions, mesh.faces, (height, width))  # the visibility buffer
+    color = interpolate(vertex_colors, mesh.faces, visibility)
+    crossings = find_crossings(positions, mesh.faces, visibility, MeshEdges.of(mesh.faces))
     picture = antialias(color, crossings)
 
 Each has a `_backward`. `rasterize_backward` holds inside of faces, `antialias_backward` adds the

@@ -34,7 +34,7 @@ import numpy.typing as npt
 from photograd._arrays import Arguments
 from photograd.raster.edges import MeshEdges
 from photograd.raster.lookup import FaceLookup
-from photograd.raster.silhouettes import Segments, checked_near, line_backward, sums
+from photograd.raster.silhouettes import Segments, line_backward, sums
 from photograd.raster.visibility import Visibility
 from photograd.types import Array, FloatArray
 
@@ -61,14 +61,19 @@ class Crossings:
 
 
 def find_crossings(
-    positions: FloatArray, faces: Array, seen: Visibility, edges: MeshEdges, *, near: float = 1e-3
+    positions: FloatArray,
+    faces: Array,
+    visibility: Visibility,
+    edges: MeshEdges,
+    *,
+    near: float = 1e-3,
 ) -> Crossings:
     """What `antialias` blends.
 
     Args:
         positions: (V, 3) in homogeneous pixels, of `project`.
         faces: (F, 3) that were rasterized.
-        seen: by `rasterize`.
+        visibility: by `rasterize`.
         edges: of the faces.
         near: meters, that of the `RasterOptions`.
 
@@ -78,11 +83,11 @@ def find_crossings(
     """
     call = Arguments("find_crossings", np.float64)
     positions = call.array("positions", positions, ("V", 3))
-    checked_near(call, near)
-    height, width = seen.face.shape
+    call.number("near", near, above=0)
+    height, width = visibility.face.shape
     segments = Segments.of(positions, edges, (height, width), near)
     lookup = FaceLookup(positions, faces, (height, width), near=near)
-    parts = [_along(segments, axis, seen, positions, edges, lookup) for axis in (0, 1)]
+    parts = [_along(segments, axis, visibility, positions, edges, lookup) for axis in (0, 1)]
     return Crossings(*(np.concatenate(each) for each in zip(*parts, strict=True)))
 
 
@@ -156,13 +161,13 @@ def _limit(crossings: Crossings, pixels: int) -> FloatArray:
 def _along(
     segments: Segments,
     axis: int,
-    seen: Visibility,
+    visibility: Visibility,
     positions: FloatArray,
     edges: MeshEdges,
     lookup: FaceLookup,
 ) -> tuple[Array, ...]:
     """The fields of `Crossings` in rows (axis 0) or columns (axis 1)."""
-    height, width = seen.face.shape
+    height, width = visibility.face.shape
     other = 1 - axis
     steep = np.abs(segments.line[:, 0]) >= np.abs(segments.line[:, 1])
     asked = (steep == (axis == 0)) & (segments.side != 0)
@@ -190,7 +195,7 @@ def _along(
     visible = lookup.nearest(beside)[1] > depth
     numbers = [inner, inner + direction]
     pixels = [_pixel(number, at, axis, width) for number in numbers]
-    face = seen.face.reshape(-1)
+    face = visibility.face.reshape(-1)
     visible &= face[pixels[0]] != face[pixels[1]]
     outer_takes = s > 0.5
     sign = np.where(outer_takes, 1.0, -1.0)

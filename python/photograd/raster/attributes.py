@@ -13,13 +13,13 @@ from photograd.raster.visibility import Visibility
 from photograd.types import Array, FloatArray
 
 
-def interpolate(attributes: Array, faces: Array, seen: Visibility) -> FloatArray:
+def interpolate(attributes: Array, faces: Array, visibility: Visibility) -> FloatArray:
     """Blend the attributes of a triangle's corners by the barycentrics of each pixel.
 
     Args:
         attributes: (V, C), any numbers of a vertex: colors, texture coordinates, normals.
         faces: (F, 3) that were rasterized.
-        seen: by `rasterize`.
+        visibility: by `rasterize`.
 
     Returns:
         (H, W, C) float64, zero where nothing is seen.
@@ -31,19 +31,19 @@ def interpolate(attributes: Array, faces: Array, seen: Visibility) -> FloatArray
     call = Arguments("interpolate", np.float64)
     attributes = call.array("attributes", attributes, ("V", "C"), finite=False)
     faces = call.array("faces", faces, ("F", 3), dtype=np.uint32)
-    out = np.zeros((*seen.face.shape, attributes.shape[1]))
+    out = np.zeros((*visibility.face.shape, attributes.shape[1]))
     rows = out.reshape(-1, attributes.shape[1])
-    call.run(_core.interpolate, attributes, faces, *_rows(seen), rows)
+    call.run(_core.interpolate, attributes, faces, *_rows(visibility), rows)
     return out
 
 
 def interpolate_backward(
-    attributes: Array, faces: Array, seen: Visibility, d_out: FloatArray
+    attributes: Array, faces: Array, visibility: Visibility, d_out: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """The adjoint of `interpolate`.
 
     Args:
-        attributes, faces, seen: as for `interpolate`.
+        attributes, faces, visibility: as for `interpolate`.
         d_out: (H, W, C) dL/d of what it returned.
 
     Returns:
@@ -57,13 +57,13 @@ def interpolate_backward(
     attributes = call.array("attributes", attributes, ("V", "C"), finite=False)
     faces = call.array("faces", faces, ("F", 3), dtype=np.uint32)
     channels = attributes.shape[1]
-    d_out = call.array("d_out", d_out, (*seen.face.shape, channels), finite=False)
-    d_attributes, d_barycentrics = np.zeros_like(attributes), np.zeros_like(seen.barycentrics)
+    d_out = call.array("d_out", d_out, (*visibility.face.shape, channels), finite=False)
+    d_attributes, d_barycentrics = np.zeros_like(attributes), np.zeros_like(visibility.barycentrics)
     call.run(
         _core.interpolate_backward,
         attributes,
         faces,
-        *_rows(seen),
+        *_rows(visibility),
         d_out.reshape(-1, channels),
         d_attributes,
         d_barycentrics.reshape(-1, 2),
@@ -71,5 +71,5 @@ def interpolate_backward(
     return d_attributes, d_barycentrics
 
 
-def _rows(seen: Visibility) -> tuple[Array, Array]:
-    return seen.face.reshape(-1), seen.barycentrics.reshape(-1, 2)
+def _rows(visibility: Visibility) -> tuple[Array, Array]:
+    return visibility.face.reshape(-1), visibility.barycentrics.reshape(-1, 2)

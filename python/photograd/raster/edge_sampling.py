@@ -24,7 +24,7 @@ from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
 from photograd.raster.edges import MeshEdges
-from photograd.raster.silhouettes import Segments, checked_near, line_backward
+from photograd.raster.silhouettes import Segments, line_backward
 from photograd.types import Array, FloatArray
 
 SIDE = 1e-3
@@ -77,7 +77,7 @@ def sample_edges(
     call = Arguments("sample_edges", np.float64)
     positions = call.array("positions", positions, ("V", 3))
     call.number("per_pixel", per_pixel, above=0, high=1e6)
-    checked_near(call, near)
+    call.number("near", near, above=0)
     found = Segments.of(positions, edges, size, near)
     length = np.sqrt(np.square(found.end - found.start).sum(axis=1))
     count = np.maximum(np.ceil(per_pixel * length), 1).astype(np.int64)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from photograd._arrays import Arguments
 from photograd.raster.edges import MeshEdges
 from photograd.types import FloatArray
 
@@ -37,7 +36,14 @@ class Segments:
     def of(
         cls, positions: FloatArray, edges: MeshEdges, size: tuple[int, int], near: float
     ) -> Segments:
-        """The silhouettes of a mesh with vertices `positions` (V, 3) in homogeneous pixels."""
+        """The silhouettes of a mesh.
+
+        Args:
+            positions: (V, 3) vertices in homogeneous pixels.
+            edges: of the mesh.
+            size: (height, width) of the picture.
+            near: of the near plane, meters.
+        """
         chosen = np.flatnonzero(edges.silhouettes(positions))
         a, b = (positions[edges.ends[chosen, k]] for k in range(2))
         low, high = _cut(a, b, size, near)
@@ -56,6 +62,12 @@ def line_backward(
     """dL/dpositions (V, 3) of cotangents d_line (N, 3) of the lines of the edges `owner` (N,).
 
     d_a += b x d_line and d_b += d_line x a.
+
+    Args:
+        positions: (V, 3) vertices in homogeneous pixels.
+        edges: of the mesh.
+        owner: (N,) numbers of edges.
+        d_line: (N, 3).
     """
     first, second = edges.ends[owner].T.astype(np.int64)
     d_a = np.cross(positions[second], d_line)
@@ -64,14 +76,9 @@ def line_backward(
 
 
 def sums(owner: npt.NDArray[np.int64], rows: FloatArray, count: int) -> FloatArray:
-    """(count, K) sums of the rows (N, K) of each owner, in their order."""
+    """(count, K) sums of the rows (N, K) of each `owner` (N,) below `count`, in their order."""
     columns = [np.bincount(owner, weights=column, minlength=count) for column in rows.T]
     return np.stack(columns, axis=-1)
-
-
-def checked_near(call: Arguments, near: float) -> float:
-    """A near plane in meters."""
-    return call.number("near", near, above=0)
 
 
 def _on_screen(positions: FloatArray) -> FloatArray:

@@ -65,7 +65,7 @@ class Visibility:
         )
 
     @property
-    def seen(self) -> npt.NDArray[np.bool_]:
+    def covered(self) -> npt.NDArray[np.bool_]:
         """(H, W) whether anything is seen."""
         return self.face >= 0
 
@@ -129,7 +129,7 @@ def rasterize(
 def rasterize_backward(
     positions: FloatArray,
     faces: Array,
-    seen: Visibility,
+    visibility: Visibility,
     d_barycentrics: FloatArray | None = None,
     d_depth: FloatArray | None = None,
 ) -> FloatArray:
@@ -137,7 +137,7 @@ def rasterize_backward(
 
     Args:
         positions, faces: as for `rasterize`; faces with `first_face` 0.
-        seen: what it returned.
+        visibility: what it returned.
         d_barycentrics: (H, W, 2), None for zero.
         d_depth: (H, W), None for zero. Both are read where a face is seen.
 
@@ -146,7 +146,7 @@ def rasterize_backward(
     """
     call = Arguments("rasterize_backward", np.float64)
     positions, faces = mesh_arrays(call, positions, faces)
-    height, width = seen.face.shape
+    height, width = visibility.face.shape
     if d_barycentrics is None:
         d_barycentrics = np.zeros((height, width, 2))
     if d_depth is None:
@@ -155,13 +155,19 @@ def rasterize_backward(
     d_depth = call.array("d_depth", d_depth, (height, width))
     d_positions = np.zeros_like(positions)
     call.run(
-        _core.rasterize_backward, positions, faces, seen.face, d_barycentrics, d_depth, d_positions
+        _core.rasterize_backward,
+        positions,
+        faces,
+        visibility.face,
+        d_barycentrics,
+        d_depth,
+        d_positions,
     )
     return d_positions
 
 
 def mesh_arrays(call: Arguments, positions: Array, faces: Array) -> tuple[FloatArray, Array]:
-    """Positions (V, 3) float64 and faces (F, 3) uint32, checked."""
+    """`positions` (V, 3) float64 and `faces` (F, 3) uint32, as the arguments of a `call`."""
     positions = call.array("positions", positions, ("V", 3))
     return positions, call.array("faces", faces, ("F", 3), dtype=np.uint32)
 
