@@ -19,6 +19,7 @@ __all__: list[str] = [
     "EnvironmentSampler",
     "HashSettings",
     "MarchSettings",
+    "NeuralSamples",
     "NeuralSettings",
     "Octree",
     "Op",
@@ -829,6 +830,12 @@ class NeuralSettings:
         color: PerceptronShape,
     ) -> None: ...
 
+class NeuralSamples:
+    """
+    What march_neural keeps of its samples for march_neural_backward.
+    """
+    def __init__(self) -> None: ...
+
 class TexturePlan:
     """
     Points sorted by tile, with their colors.
@@ -1474,9 +1481,10 @@ def march_neural(
     occupancy: numpy.ndarray | None,
     march: MarchSettings,
     rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    keep: NeuralSamples = None,
 ) -> tuple[typing.Any, ...]:
     """
-    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None.
+    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None. Samples are written to keep unless None.
     """
 
 def march_neural_backward(
@@ -1489,9 +1497,10 @@ def march_neural_backward(
     d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
+    kept: NeuralSamples = None,
 ) -> None:
     """
-    Adds to d_parameters, and to d_rays unless None.
+    Adds to d_parameters, and to d_rays unless None. kept: of the forward pass, or None.
     """
 
 def march_octree_sh(
