@@ -10,6 +10,7 @@ from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.leaf_codes import LeafCodes
+from photograd.fields.leaf_mlps import LeafMlps
 from photograd.fields.nerf import Nerf
 from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
@@ -33,6 +34,7 @@ __all__ = [
     "HashGrid",
     "ImagePolicy",
     "LeafCodes",
+    "LeafMlps",
     "Nerf",
     "NeuralImage",
     "OctreeSh",
