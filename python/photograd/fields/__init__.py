@@ -7,6 +7,7 @@ from photograd_course.suggest import nearest
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
+from photograd.fields.gaussian_codes import GaussianCodes
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.leaf_codes import LeafCodes
@@ -29,6 +30,7 @@ __all__ = [
     "DenseGrid",
     "DenseSh",
     "Fittable",
+    "GaussianCodes",
     "GaussianScene",
     "Gaussians2D",
     "HashGrid",
