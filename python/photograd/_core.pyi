@@ -93,6 +93,8 @@ __all__: list[str] = [
     "order_by_depth",
     "perceptron_backward",
     "perceptron_forward",
+    "perceptrons_backward",
+    "perceptrons_forward",
     "phases",
     "philox4x32",
     "place_samples",
@@ -1657,6 +1659,30 @@ def perceptron_forward(
 ) -> None:
     """
     Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
+    """
+
+def perceptrons_backward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    d_outputs: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_inputs: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_parameters (rows of parameters); writes d_inputs.
+    """
+
+def perceptrons_forward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    outputs: numpy.ndarray,
+) -> None:
+    """
+    Writes outputs of inputs (M, shape's): those from offset[n] on by row n of parameters.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:

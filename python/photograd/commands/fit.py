@@ -136,7 +136,9 @@ StartFromOption: TypeAlias = Annotated[
     typer.Option(
         "--start-from",
         help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
-        "plenoctree tabulates, or whose voxels leaf_codes take; or, for a textured_mesh, a mesh "
+        "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
+        "whose Gaussians gaussian_codes take; "
+        "or, for a textured_mesh, a mesh "
         "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
