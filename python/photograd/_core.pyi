@@ -19,6 +19,7 @@ __all__: list[str] = [
     "EnvironmentSampler",
     "HashSettings",
     "MarchSettings",
+    "NeuralSamples",
     "NeuralSettings",
     "Octree",
     "Op",
@@ -95,6 +96,8 @@ __all__: list[str] = [
     "order_by_depth",
     "perceptron_backward",
     "perceptron_forward",
+    "perceptrons_backward",
+    "perceptrons_forward",
     "phases",
     "philox4x32",
     "place_samples",
@@ -857,6 +860,12 @@ class NeuralSettings:
         color: PerceptronShape,
     ) -> None: ...
 
+class NeuralSamples:
+    """
+    What march_neural keeps of its samples for march_neural_backward.
+    """
+    def __init__(self) -> None: ...
+
 class TexturePlan:
     """
     Points sorted by tile, with their colors.
@@ -1526,9 +1535,10 @@ def march_neural(
     occupancy: numpy.ndarray | None,
     march: MarchSettings,
     rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    keep: NeuralSamples = None,
 ) -> tuple[typing.Any, ...]:
     """
-    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None.
+    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None. Samples are written to keep unless None.
     """
 
 def march_neural_backward(
@@ -1541,9 +1551,10 @@ def march_neural_backward(
     d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
+    kept: NeuralSamples = None,
 ) -> None:
     """
-    Adds to d_parameters, and to d_rays unless None.
+    Adds to d_parameters, and to d_rays unless None. kept: of the forward pass, or None.
     """
 
 def march_octree_sh(
@@ -1700,6 +1711,30 @@ def perceptron_forward(
 ) -> None:
     """
     Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
+    """
+
+def perceptrons_backward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    d_outputs: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_inputs: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_parameters (rows of parameters); writes d_inputs.
+    """
+
+def perceptrons_forward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    outputs: numpy.ndarray,
+) -> None:
+    """
+    Writes outputs of inputs (M, shape's): those from offset[n] on by row n of parameters.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
