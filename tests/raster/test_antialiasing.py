@@ -107,7 +107,7 @@ def test_a_slanted_edge_covers_what_lies_on_its_side() -> None:
 
 def test_the_picture_is_continuous_where_the_samples_jump() -> None:
     before, after = (Picture(*half_plane(x), (8, 8)) for x in (3.5 - 1e-9, 3.5 + 1e-9))
-    assert not np.array_equal(before.covered.face, after.covered.face)
+    assert not np.array_equal(before.visibility.face, after.visibility.face)
     pictures = []
     for picture in (before, after):
         picture.place["color"] = picture.visibility.covered[..., None].astype(float)
