@@ -11,6 +11,7 @@ docs/images/leaf_codes_curves.png.
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -41,7 +42,7 @@ TUNING = 0.15
 MOMENTS = (0.0, 0.1, 0.25, 0.5, 1.0)
 """Of the seconds, after which a fit is scored."""
 PACE_STEPS = 4
-VIEWS = 6
+VIEWS = 5
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,8 @@ def run(capture: Capture, contender: Contender, rays: int, steps: int, rate: flo
         found.append(evaluate(as_model(fit), capture.test).psnr)
     model = as_model(fit)
     size, frame = stored_bytes(model) / 2**20, frame_ms(model, capture)
+    scores = ", ".join(f"{s:.0f} s {p:.2f} dB" for s, p in zip(seconds, found, strict=True))
+    sys.stderr.write(f"{contender.name}: {scores}\n")
     return Curve(contender, rate, seconds, found, steps, size, frame)
 
 
