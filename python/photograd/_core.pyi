@@ -19,6 +19,7 @@ __all__: list[str] = [
     "EnvironmentSampler",
     "HashSettings",
     "MarchSettings",
+    "NeuralSamples",
     "NeuralSettings",
     "Octree",
     "Op",
@@ -31,6 +32,7 @@ __all__: list[str] = [
     "PreparedRays64",
     "PreparedSplats32",
     "PreparedSplats64",
+    "PreparedTriangles",
     "Quadtree",
     "RayOptions",
     "ReferenceBvh",
@@ -68,6 +70,8 @@ __all__: list[str] = [
     "hash_encode",
     "hash_encode_backward",
     "instruction_set",
+    "interpolate",
+    "interpolate_backward",
     "lights",
     "log1p_unit",
     "march",
@@ -102,6 +106,8 @@ __all__: list[str] = [
     "prepare_splats",
     "principled_values",
     "principled_values_backward",
+    "rasterize",
+    "rasterize_backward",
     "read_vdb",
     "sample",
     "sample_backward",
@@ -117,6 +123,7 @@ __all__: list[str] = [
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "silhouettes",
     "sobol_words",
     "sparse_adam",
     "sparse_sh_weights",
@@ -314,6 +321,28 @@ class BspTree:
     def polygons(self) -> tuple[typing.Any, ...]:
         """
         Points (Q, 3), where each begins (P + 1,), triangles (P,).
+        """
+
+class PreparedTriangles:
+    """
+    Triangles of one view, by tile.
+    """
+    def __init__(
+        self,
+        positions: numpy.ndarray,
+        faces: numpy.ndarray,
+        height: typing.SupportsInt | typing.SupportsIndex,
+        width: typing.SupportsInt | typing.SupportsIndex,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def nearest(
+        self,
+        points: numpy.ndarray,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+        far: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Face (N,) and depth (N,) at points (x, y) of the image.
         """
 
 class Sdf:
@@ -830,6 +859,12 @@ class NeuralSettings:
         density: PerceptronShape,
         color: PerceptronShape,
     ) -> None: ...
+
+class NeuralSamples:
+    """
+    What march_neural keeps of its samples for march_neural_backward.
+    """
+    def __init__(self) -> None: ...
 
 class TexturePlan:
     """
@@ -1439,6 +1474,30 @@ def instruction_set() -> str:
     Name of the kernels in use: baseline, v3 or v4.
     """
 
+def interpolate(
+    attributes: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Writes the pixels that see a face.
+    """
+
+def interpolate_backward(
+    attributes: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_attributes: numpy.ndarray,
+    d_barycentrics: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_attributes, writes d_barycentrics where a face is seen.
+    """
+
 def log1p_unit(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable ln(1 + x) for x in [0, 1] on a flat array.
@@ -1476,9 +1535,10 @@ def march_neural(
     occupancy: numpy.ndarray | None,
     march: MarchSettings,
     rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    keep: NeuralSamples = None,
 ) -> tuple[typing.Any, ...]:
     """
-    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None.
+    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None. Samples are written to keep unless None.
     """
 
 def march_neural_backward(
@@ -1491,9 +1551,10 @@ def march_neural_backward(
     d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
+    kept: NeuralSamples = None,
 ) -> None:
     """
-    Adds to d_parameters, and to d_rays unless None.
+    Adds to d_parameters, and to d_rays unless None. kept: of the forward pass, or None.
     """
 
 def march_octree_sh(
@@ -1750,6 +1811,40 @@ def principled_values_backward(
     Adds to d_parameters (T, 5) for d_values (N, 3).
     """
 
+def rasterize(
+    positions: numpy.ndarray,
+    faces: numpy.ndarray,
+    near: typing.SupportsFloat | typing.SupportsIndex,
+    far: typing.SupportsFloat | typing.SupportsIndex,
+    cull: typing.SupportsInt | typing.SupportsIndex,
+    depth_test: typing.SupportsInt | typing.SupportsIndex,
+    depth_write: bool,
+    stencil_rules: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(7)"
+    ],
+    first_face: typing.SupportsInt | typing.SupportsIndex,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    depth: numpy.ndarray,
+    stencil: typing.Any,
+    overdraw: typing.Any,
+) -> None:
+    """
+    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None.
+    """
+
+def rasterize_backward(
+    positions: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    d_barycentrics: numpy.ndarray,
+    d_depth: numpy.ndarray,
+    d_positions: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_positions.
+    """
+
 def read_vdb(
     path: str, memory_limit: typing.SupportsInt | typing.SupportsIndex
 ) -> tuple[list[SparseGrid], dict[str, bool | int | float | str]]:
@@ -1878,6 +1973,9 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def silhouettes(
+    positions: numpy.ndarray, ends: numpy.ndarray, opposite: numpy.ndarray, out: numpy.ndarray
+) -> None: ...
 def sobol_words(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,

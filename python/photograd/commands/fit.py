@@ -212,6 +212,9 @@ def fit(
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
     comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
 
+    A warning says if all cameras look from nearly one direction, or stand at nearly one place: if
+    their longest baseline is below a tenth of their distance from the scene, depth is uncertain.
+
     In the place of CAPTURE, a picture (.png, .jpg) is fitted by a network behind an encoding:
     --representation hash_grid, frequencies, nerf or one_blob, --resolution of the finest level,
     --rays pixels a step. OUT then holds image.npz and picture.png.
@@ -240,7 +243,11 @@ def fit(
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
-        job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
+        for warning in caught:
+            note(f"warning: {warning.message}")
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)

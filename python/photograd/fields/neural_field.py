@@ -83,7 +83,7 @@ class NeuralPolicy(MarchPolicy):
 
 @dataclass(frozen=True)
 class NeuralContext:
-    """What the backward pass needs: O(1) per ray."""
+    """What the backward pass needs: O(1) per ray, and the samples that were kept, if any."""
 
     parameters: tuple[Array, Array, Array]
     occupancy: Array | None
@@ -91,6 +91,7 @@ class NeuralContext:
     rays: tuple[Array, Array, Array, Array]
     image: tuple[Array, Array, Array]
     camera_adjoint: bool
+    kept: Any  # _core.NeuralSamples, or None
 
     @property
     def sample_count(self) -> int:
@@ -333,10 +334,12 @@ class NeuralField(Fittable):
         parameters, settings = self._arrays(), self.policy.settings(options.stop)
         rays = checked_rays(batch, settings, options, parameters[1].dtype, seed=seed, step=step)
         cells = self.occupied()
-        image = _core.march_neural(self._settings, parameters, cells, settings, rays)
+        kept = _core.NeuralSamples() if options.keep_samples else None
+        image = _core.march_neural(self._settings, parameters, cells, settings, rays, kept)
         color, transmittance, depth = image
         require_finite_image(color, transmittance, batch)
-        context = NeuralContext(parameters, cells, settings, rays, image, options.camera_adjoint)
+        of_rays = settings, rays, image, options.camera_adjoint
+        context = NeuralContext(parameters, cells, *of_rays, kept)
         return Outputs(color, 1 - transmittance, depth), context
 
     def render_backward(self, context: NeuralContext, d_outputs: Outputs) -> dict[str, Array]:
@@ -350,7 +353,7 @@ class NeuralField(Fittable):
         d_parameters = tuple(np.zeros_like(values) for values in c.parameters)
         d_rays = tuple(np.zeros_like(a) for a in c.rays[:2]) if c.camera_adjoint else None
         of_field = (self._settings, c.parameters, c.occupancy, c.march, c.rays)
-        _core.march_neural_backward(*of_field, c.image, cotangents, d_parameters, d_rays)
+        _core.march_neural_backward(*of_field, c.image, cotangents, d_parameters, d_rays, c.kept)
         gradients = dict(zip(("table", "density", "color"), d_parameters, strict=True))
         gradients = {name: gradients[name] for name in self.params}
         if d_rays is not None:

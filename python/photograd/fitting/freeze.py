@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Self
 
@@ -18,7 +18,9 @@ import numpy as np
 from photograd_course.atomic_io import atomic_write
 
 from photograd._checkpoint import make_folder
-from photograd.errors import RangeError, message
+from photograd._checks import from_plain
+from photograd._json_node import read_json
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.compare import frame_seconds, stored_bytes
 from photograd.fitting.data import learned_background
@@ -91,6 +93,7 @@ def learn_freeze_refine(
     Raises:
         RangeError: a representation without a discrete structure, a capture without held-out views,
             or a fit that passed the moment outside of this function.
+        IoError: a damaged frozen.json in the folder of a fit that passed the moment; names it.
 
     Example:
         >>> job = Fit.start(capture, options_for("sparse_sh", resolution=32, steps=40))
@@ -120,9 +123,20 @@ def learn_freeze_refine(
         expected, got = f"a fit before step {at}", f"one at step {fit.step_number}"
         remedy = "begin it again in another folder"
         raise RangeError(message("learn_freeze_refine", "fit", expected, got, remedy))
-    frozen = Moment(**json.loads(path.read_text()))
+    frozen = _read_moment(path)
     fit.model.freeze()
     result = run(fit, folder, lambda: False)
     if fit.step_number < fit.steps:
         return None
     return Refinement(frozen, Moment.of_fit(fit, result.seconds))
+
+
+def _read_moment(path: Path) -> Moment:
+    """The moment that was written to `path`. Raises IoError if the file is damaged."""
+    name = "learn_freeze_refine"
+    try:
+        return from_plain(name, Moment, read_json(name, path).value)
+    except Error as failure:
+        remedy = "go on without --freeze, or begin the fit again in another folder"
+        expected = f"what --freeze wrote: {', '.join(field.name for field in fields(Moment))}"
+        raise IoError(message(name, str(path), expected, f"{failure}", remedy)) from failure

@@ -67,19 +67,19 @@ struct SampleBatchState {
     }
 };
 
-/// The one loop. pass.on_group(ray, state, g) composites group g and returns the optical depth
-/// behind it; pass.on_batch(state, cache) then gets the whole batch.
-template <Real R, class F, class Pass>
-void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
+/// The one loop. lookup(batch, values) writes the field's values of a batch and returns its cache;
+/// pass.on_group(ray, state, g) composites group g and returns the optical depth behind it;
+/// pass.on_batch(state, cache) then gets the whole batch.
+template <Real R, class Lookup, class Pass>
+void walk(Lookup lookup, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
           std::int64_t end, Pass& pass) {
     const R dt = static_cast<R>(options.dt), tau_stop = static_cast<R>(options.tau_stop());
-    typename F::Cache cache;
     SampleBatchState<R> state;
     for (std::int64_t ray = begin; ray < end; ++ray)
         if (rays.samples[ray] > 0) state.rays.push_back(ray);
     for (std::int32_t k0 = 0; !state.rays.empty(); k0 += lane_count) {
         state.place(rays, dt, begin, k0);
-        field.eval(state.batch, cache, state.values);
+        const auto& cache = lookup(state.batch, state.values);
         std::vector<std::int64_t> alive;
         for (std::size_t g = 0; g < state.rays.size(); ++g) {
             for (int i = state.batch.used[g]; i < lane_count; ++i)
@@ -166,27 +166,46 @@ struct BackwardPass {
 
 }  // namespace detail
 
-template <Real R, class F>
-void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
-           const MarchOutputs<R>& out) {
+/// Evaluates each batch, in one cache. Another form is in field/kept_samples.h.
+template <class F>
+struct Evaluation {
+    const F& field;
+    typename F::Cache cache{};
+
+    const typename F::Cache& operator()(const SampleBatch<typename F::Scalar>& batch,
+                                        SampleValues<typename F::Scalar>& values) {
+        field.eval(batch, cache, values);
+        return cache;
+    }
+};
+
+/// lookup_of(chunk) looks up the batches of a chunk of rays, see detail::walk.
+template <class F, Real R, class LookupOf>
+void march_by(const LookupOf& lookup_of, const RayBatch<R>& rays, const MarchOptions& options,
+              const MarchOutputs<R>& out) {
     for_chunks(
         0, rays.count,
-        [&](std::int64_t, std::int64_t begin, std::int64_t end) {
+        [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
             detail::ForwardPass<R> pass{options.quadrature, static_cast<R>(options.dt), begin, {}};
             pass.totals.resize(static_cast<std::size_t>(end - begin));
-            detail::walk(field, rays, options, begin, end, pass);
+            detail::walk(lookup_of(chunk), rays, options, begin, end, pass);
             for (std::int64_t ray = begin; ray < end; ++ray)
                 write_outputs(pass.totals[static_cast<std::size_t>(ray - begin)], ray, out);
         },
         chunk_rays<F>());
 }
+template <Real R, class F>
+void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
+           const MarchOutputs<R>& out) {
+    march_by<F>([&](std::int64_t) { return Evaluation<F>{field}; }, rays, options, out);
+}
 
 /// Adds parameter gradients to the sink's buffer, and gradients of the rays where `adjoint` has
-/// room.
-template <Real R, class F>
-void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
-                    const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,
-                    typename F::Sink& sink) {
+/// room. lookup_of(chunk) looks up the batches of a chunk of a slab, see detail::walk.
+template <Real R, class F, class LookupOf>
+void march_backward_by(const LookupOf& lookup_of, const F& field, const RayBatch<R>& rays,
+                       const MarchOptions& options, const MarchOutputs<R>& out,
+                       const MarchAdjoint<R>& adjoint, typename F::Sink& sink) {
     for_slabs(rays.samples, rays.count, [&](std::int64_t first, std::int64_t last) {
         sink.begin(static_cast<int>(chunk_count(last - first, chunk_rays<F>())));
         for_chunks(
@@ -202,11 +221,18 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
                                                 {}};
                 for (std::int64_t ray = begin; ray < end; ++ray)
                     pass.cotangents.push_back(start_cotangents(out, adjoint, ray));
-                detail::walk(field, rays, options, begin, end, pass);
+                detail::walk(lookup_of(chunk), rays, options, begin, end, pass);
             },
             chunk_rays<F>());
         sink.finish();
     });
+}
+template <Real R, class F>
+void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
+                    const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,
+                    typename F::Sink& sink) {
+    march_backward_by([&](std::int64_t) { return Evaluation<F>{field}; }, field, rays, options, out,
+                      adjoint, sink);
 }
 
 }  // namespace photograd
