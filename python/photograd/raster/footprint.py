@@ -1,7 +1,7 @@
 """How fast attributes change from pixel to pixel, for the level of a mip map; with the adjoint.
 
-With the lines E_i of a triangle's edges (cpp/photograd/raster/triangle.h), p = (x, y, 1), and the sums
-S = sum E_i and A = sum a_i E_i give the attribute a and its derivative along x (y alike):
+With the lines E_i of a triangle's edges (cpp/photograd/raster/triangle.h) and p = (x, y, 1), the
+sums S = sum E_i and A = sum a_i E_i give the attribute a and its derivative along x (y alike):
 
     s = <S, p>      a = <A, p> / s      a_x = (A_x - a S_x) / s
 
