@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.capture.capture import Capture
-from photograd.errors import RangeError
+from photograd.errors import IoError, RangeError
 from photograd.fields import HashGrid
 from photograd.fitting.freeze import FROZEN, learn_freeze_refine
 from photograd.fitting.loop import Fit
@@ -96,3 +96,22 @@ def test_what_has_no_structure_and_what_passed_it_are_refused(
     late.run(tmp_path, should_stop=lambda: late.step_number >= 7)
     with pytest.raises(RangeError, match=r"a fit before step 5, got one at step 7 \(begin it"):
         learn_freeze_refine(late, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "valid JSON"),
+        ("[1]", "expected an object"),
+        ('{"step": 3, "psnr": 20.0}', "missing or unknown bytes, frame_ms, seconds"),
+        ('{"step": 3, "psnr": "high", "bytes": 1, "frame_ms": 1.0, "seconds": 1.0}', "psnr"),
+    ],
+)
+def test_a_damaged_first_moment_is_named(
+    text: str, words: str, capture: Capture, tmp_path: Path
+) -> None:
+    fit = Fit.start(capture, scene.options(**GRID | {"steps": 4, "rays": 64}))
+    (tmp_path / FROZEN).write_text(text)
+    fit.run(tmp_path)
+    with pytest.raises(IoError, match=rf"{FROZEN}: expected what .*{words}.*in another folder"):
+        learn_freeze_refine(fit, tmp_path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -183,6 +184,30 @@ def test_cells_are_marked_by_the_densities_in_them(make: Any) -> None:
     for step in range(0, EVERY * PARTS, EVERY):
         field.after_step({}, step)
     np.testing.assert_allclose(field.reached, np.float32(DECAY) * before, rtol=1e-6)
+
+
+@each_field
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_kept_samples_change_no_bit(make: Any, dtype: Any) -> None:
+    field = make(dtype)
+    batch, keep = rays(300, dtype), replace(OPTIONS, keep_samples=True, stop=1e-2)
+    outputs, context = field.render(batch, seed=1, step=2, options=replace(OPTIONS, stop=1e-2))
+    same, kept = field.render(batch, seed=1, step=2, options=keep)
+    assert (context.kept is None, kept.kept is None) == (True, False)
+    d = Outputs(np.ones_like(outputs.color), np.ones_like(outputs.opacity))
+    expected = field.render_backward(context, d)
+    for found in (field.render_backward(kept, d), field.render_backward(kept, d)):  # twice
+        for name in expected:
+            np.testing.assert_array_equal(found[name], expected[name])
+    np.testing.assert_array_equal(same.color, outputs.color)
+    # What was kept of other rays, or of more than it may keep, is evaluated again.
+    fewer = RayBatch(batch.origins[:50], batch.directions[:50], batch.pixel[:50])
+    _, other = field.render(fewer, seed=1, step=2, options=OPTIONS)
+    d = Outputs(np.ones((50, 3), dtype), np.ones(50, dtype))
+    expected = field.render_backward(other, d)
+    found = field.render_backward(replace(other, kept=kept.kept), d)
+    for name in expected:
+        np.testing.assert_array_equal(found[name], expected[name])
 
 
 def test_sizes_that_no_network_has_are_refused() -> None:

@@ -13,6 +13,7 @@ from photograd.network import (
     OneBlobEncoding,
     Perceptron,
 )
+from photograd.representation import RenderOptions
 
 G = np.random.default_rng(2)
 
@@ -38,3 +39,5 @@ def networks() -> None:
         for kind in fields:
             field = kind.example(seed=1, dtype=dtype)
             field.densities(np.zeros((3, 3), dtype))
+            keep = RenderOptions(keep_samples=True)
+            field.render(field.example_batch(seed=1), seed=1, step=0, options=keep)

@@ -73,12 +73,20 @@ struct NeuralField {
         std::vector<Block> blocks;
         std::size_t used = 0;
     };
+    /// Bytes of a block: what it says of its samples, and the numbers of both networks.
+    [[nodiscard]] std::size_t block_bytes() const {
+        return sizeof(Block) + density.workspace_bytes() + color.workspace_bytes();
+    }
 
     void eval(const SampleBatch<R>& batch, Cache& cache, SampleValues<R>& values) const {
         collect(batch, cache);
+        for (std::size_t b = 0; b < cache.used; ++b) evaluate(batch, cache.blocks[b]);
+        write_values(cache, values);
+    }
+    /// Writes the values of the batch that eval left in `cache`.
+    void write_values(const Cache& cache, SampleValues<R>& values) const {
         for (std::size_t b = 0; b < cache.used; ++b) {
-            Block& block = cache.blocks[b];
-            evaluate(batch, block);
+            const Block& block = cache.blocks[b];
             const R *s = block.density.outputs(), *c = block.color.outputs();
             for (int i = 0; i < block.count; ++i) {
                 const auto n = static_cast<std::size_t>(i);

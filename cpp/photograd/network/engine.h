@@ -60,6 +60,9 @@ public:
         v.numbers_.resize(static_cast<std::size_t>(workspace_));
         v.outputs_ = layers_.back().output;
     }
+    [[nodiscard]] std::size_t workspace_bytes() const {
+        return sizeof(float) * static_cast<std::size_t>(workspace_);
+    }
     void forward(Values& v, int samples) const { kernels().perceptron_forward(block(v, samples)); }
 
     /// Sums of derivatives with respect to the parameters.
@@ -146,6 +149,12 @@ public:
         v.inputs_.resize(static_cast<std::size_t>(shape_->inputs * perceptron_block));
         v.outputs_.resize(static_cast<std::size_t>(shape_->outputs() * perceptron_block));
         v.samples_.resize(perceptron_block);
+    }
+    [[nodiscard]] std::size_t workspace_bytes() const {
+        std::size_t numbers = static_cast<std::size_t>(2 * shape_->inputs + shape_->outputs());
+        for (int l = 0; l < shape_->layers(); ++l)
+            numbers += static_cast<std::size_t>(shape_->takes(l));
+        return sizeof(R) * numbers * perceptron_block;
     }
     void forward(Values& v, int samples) const {
         std::vector<R> x(static_cast<std::size_t>(shape_->inputs));

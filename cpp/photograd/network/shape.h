@@ -39,6 +39,8 @@ struct PerceptronShape {
         return sum;
     }
     [[nodiscard]] std::size_t parameters() const { return offset(layers()); }
+
+    bool operator==(const PerceptronShape&) const = default;
 };
 
 }  // namespace photograd

@@ -131,12 +131,22 @@ DecodeOption: TypeAlias = Annotated[
         help=f"Of {_users('decode')}: {' or '.join(DECODES)}, where the network is evaluated.",
     ),
 ]
+ImportanceOption: TypeAlias = Annotated[
+    int,
+    typer.Option(
+        "--importance",
+        min=0,
+        help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
+    ),
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
         "--start-from",
         help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
-        "plenoctree tabulates, or whose voxels leaf_codes take; or, for a textured_mesh, a mesh "
+        "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
+        "whose Gaussians gaussian_codes take; "
+        "or, for a textured_mesh, a mesh "
         "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
@@ -190,6 +200,7 @@ def fit(
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
     decode: DecodeOption = DEFAULTS.decode,
+    importance: ImportanceOption = DEFAULTS.importance,
     start_from: StartFromOption = None,
     freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
@@ -209,6 +220,9 @@ def fit(
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
     comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
+
+    A warning says if all cameras look from nearly one direction, or stand at nearly one place: if
+    their longest baseline is below a tenth of their distance from the scene, depth is uncertain.
 
     In the place of CAPTURE, a picture (.png, .jpg) is fitted by a network behind an encoding:
     --representation hash_grid, frequencies, nerf or one_blob, --resolution of the finest level,
@@ -236,9 +250,14 @@ def fit(
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
+        chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
-        job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
+        for warning in caught:
+            note(f"warning: {warning.message}")
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)

@@ -10,14 +10,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
 from photograd._checkpoint import make_folder
-from photograd.errors import RangeError, message
+from photograd._checks import from_plain
+from photograd._json_node import read_json
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.compare import frame_seconds, stored_bytes
 from photograd.fitting.data import learned_background
@@ -51,6 +54,20 @@ class Moment:
     frame_ms: float
     seconds: float
 
+    @classmethod
+    def of_fit(cls, fit: Fit, seconds: float) -> Self:
+        """Score a fit as it is now.
+
+        Args:
+            fit: with held-out views in its capture.
+            seconds: of the fit since the moment before.
+        """
+        behind = None if fit.background is None else learned_background(fit.background)
+        model = Model(fit.model, behind, fit.options, {}, np.zeros((0, 3)))
+        psnr = evaluate(model, fit.capture.test).psnr
+        frame = 1000 * frame_seconds(model, fit.capture)
+        return cls(fit.step_number, psnr, stored_bytes(model), frame, seconds)
+
 
 @dataclass(frozen=True)
 class Refinement:
@@ -76,6 +93,7 @@ def learn_freeze_refine(
     Raises:
         RangeError: a representation without a discrete structure, a capture without held-out views,
             or a fit that passed the moment outside of this function.
+        IoError: a damaged frozen.json in the folder of a fit that passed the moment; names it.
 
     Example:
         >>> job = Fit.start(capture, options_for("sparse_sh", resolution=32, steps=40))
@@ -100,22 +118,25 @@ def learn_freeze_refine(
             seconds = run(fit, folder, lambda: fit.step_number >= at).seconds
         if fit.step_number < at:
             return None
-        atomic_write(path, json.dumps(asdict(_scored(fit, seconds))).encode())
+        atomic_write(path, json.dumps(asdict(Moment.of_fit(fit, seconds))).encode())
     elif not path.exists():
         expected, got = f"a fit before step {at}", f"one at step {fit.step_number}"
         remedy = "begin it again in another folder"
         raise RangeError(message("learn_freeze_refine", "fit", expected, got, remedy))
-    frozen = Moment(**json.loads(path.read_text()))
+    frozen = _read_moment(path)
     fit.model.freeze()
     result = run(fit, folder, lambda: False)
     if fit.step_number < fit.steps:
         return None
-    return Refinement(frozen, _scored(fit, result.seconds))
+    return Refinement(frozen, Moment.of_fit(fit, result.seconds))
 
 
-def _scored(fit: Fit, seconds: float) -> Moment:
-    behind = None if fit.background is None else learned_background(fit.background)
-    model = Model(fit.model, behind, fit.options, {}, np.zeros((0, 3)))
-    psnr = evaluate(model, fit.capture.test).psnr
-    frame = 1000 * frame_seconds(model, fit.capture)
-    return Moment(fit.step_number, psnr, stored_bytes(model), frame, seconds)
+def _read_moment(path: Path) -> Moment:
+    """The moment that was written to `path`. Raises IoError if the file is damaged."""
+    name = "learn_freeze_refine"
+    try:
+        return from_plain(name, Moment, read_json(name, path).value)
+    except Error as failure:
+        remedy = "go on without --freeze, or begin the fit again in another folder"
+        expected = f"what --freeze wrote: {', '.join(field.name for field in fields(Moment))}"
+        raise IoError(message(name, str(path), expected, f"{failure}", remedy)) from failure

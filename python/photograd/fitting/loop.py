@@ -14,6 +14,7 @@ the checkpoint: a resumed run ends with the same bits as an uninterrupted one.
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from functools import partial
@@ -31,6 +32,7 @@ from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd._descend import descend
 from photograd._fit_options import FitOptions
+from photograd.capture.baseline import baseline_warning
 from photograd.capture.bounds import estimate_bounds, require_views_of
 from photograd.capture.capture import Capture
 from photograd.errors import RangeError, message
@@ -111,6 +113,9 @@ class Fit:
     ) -> Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
+        A UserWarning says if the training cameras stand so close together that depth is uncertain,
+        see `photograd.capture.baseline`; not if the fit has to start from another model.
+
         Args:
             capture: the photographs.
             options: of the fit; `options_for` has those of a representation. Grids begin coarse:
@@ -138,6 +143,9 @@ class Fit:
         if start_from is not None:
             points = partial(surface_points, start_from, capture, seed=options.seed)
         kind = fittable()[options.representation]
+        narrow = baseline_warning(capture.train, bounds.box)
+        if narrow and kind.first_model != "required":
+            warnings.warn(narrow, UserWarning, stacklevel=2)
         first = None if start_from is None else start_from.field
         model, rule = kind.start(Start(capture, bounds, options, first, points))
         fit = cls(capture, options, model, None)

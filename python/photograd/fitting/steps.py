@@ -77,7 +77,7 @@ class PixelBatches(TrainingPixels):
             self.rays(chosen),
             seed=options.seed,
             step=step,
-            options=RenderOptions(stop=options.stop, jitter=True),
+            options=RenderOptions(stop=options.stop, jitter=True, keep_samples=True),
         )
         behind = background_color(background, len(chosen), seed=options.seed, step=step)
         display = self.color_space == "display"

@@ -69,6 +69,8 @@ class RenderOptions:
     jitter: bool = False  # move each ray's lattice by a random fraction of a step
     camera_adjoint: bool = False  # also dL/d "origins" and "directions", "points" of a canvas, or
     # "camera_from_world" of a picture
+    keep_samples: bool = False  # for a backward pass that follows: networks keep what they found at
+    # the samples, up to 256 MiB, instead of evaluating it again; the same bits
 
     def __post_init__(self) -> None:
         """Raises RangeError for a `stop` that is no transmittance below 1."""
