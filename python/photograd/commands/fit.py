@@ -131,6 +131,14 @@ DecodeOption: TypeAlias = Annotated[
         help=f"Of {_users('decode')}: {' or '.join(DECODES)}, where the network is evaluated.",
     ),
 ]
+ImportanceOption: TypeAlias = Annotated[
+    int,
+    typer.Option(
+        "--importance",
+        min=0,
+        help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
+    ),
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
@@ -192,6 +200,7 @@ def fit(
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
     decode: DecodeOption = DEFAULTS.decode,
+    importance: ImportanceOption = DEFAULTS.importance,
     start_from: StartFromOption = None,
     freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
@@ -241,6 +250,7 @@ def fit(
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
+        chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
         with warnings.catch_warnings(record=True) as caught:
