@@ -89,7 +89,7 @@ def mip_level_backward(shape: Sequence[int], footprint: Array, d_level: Array) -
     r2 = square[rows, longer]
     scale = np.where(r2 > 1, d_level / (LN_2 * np.maximum(r2, 1)), 0)
     d_footprint = np.zeros_like(footprint)
-    d_footprint[rows, longer] = scale[:, None] * footprint[rows, longer] * texels**2
+    d_footprint[rows, longer] = scale[:, None] * footprint[rows, longer] * np.square(texels)
     return d_footprint
 
 
