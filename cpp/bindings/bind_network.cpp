@@ -6,6 +6,7 @@
 #include "photograd/network/frequency_encoding.h"
 #include "photograd/network/hash_encoding.h"
 #include "photograd/network/one_blob_encoding.h"
+#include "sample_args.h"
 
 namespace photograd {
 namespace {
@@ -77,6 +78,50 @@ void layers_backward(const PerceptronShape& shape, const py::array& parameters,
         const py::gil_scoped_release release;
         perceptron_backward<R>(shape, p, samples, in, d_out, d_p, d_in, !fused, values);
     });
+}
+
+std::span<const std::int64_t> offset_of(const SampleRows& rows) {
+    return {rows.offset, static_cast<std::size_t>(rows.rays) + 1};
+}
+template <class R>
+const R* parameters_of(ArrayArgs& args, const PerceptronShape& shape, const SampleRows& rows,
+                       const py::array& array) {
+    const std::string axes = std::to_string(rows.rays) + " " + std::to_string(shape.parameters());
+    return args.in<R>("parameters", array, axes);
+}
+
+void networks_forward(const PerceptronShape& shape, const py::array& parameters,
+                      const py::array& offset, const py::array& inputs, py::array outputs) {
+    dispatch_real("perceptrons_forward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const R* in = args.in<R>("inputs", inputs, "M " + std::to_string(shape.inputs));
+        const SampleRows rows = sample_rows(args, offset);
+        const R* p = parameters_of<R>(args, shape, rows, parameters);
+        R* out = args.out<R>("outputs", outputs, "M " + std::to_string(shape.outputs()));
+        const py::gil_scoped_release release;
+        perceptrons_forward<R>(shape, p, offset_of(rows), in, out);
+    });
+}
+
+void networks_backward(const PerceptronShape& shape, const py::array& parameters,
+                       const py::array& offset, const py::array& inputs, const py::array& d_outputs,
+                       py::array d_parameters, py::array d_inputs) {
+    dispatch_real(
+        "perceptrons_backward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
+            using R = decltype(real);
+            const std::string in_axes = "M " + std::to_string(shape.inputs);
+            const R* in = args.in<R>("inputs", inputs, in_axes);
+            const SampleRows rows = sample_rows(args, offset);
+            const R* p = parameters_of<R>(args, shape, rows, parameters);
+            const R* d_out =
+                args.in<R>("d_outputs", d_outputs, "M " + std::to_string(shape.outputs()));
+            R* d_p =
+                args.out<R>("d_parameters", d_parameters,
+                            std::to_string(rows.rays) + " " + std::to_string(shape.parameters()));
+            R* d_in = args.out<R>("d_inputs", d_inputs, in_axes);
+            const py::gil_scoped_release release;
+            perceptrons_backward<R>(shape, p, offset_of(rows), in, d_out, d_p, d_in);
+        });
 }
 
 HashSettings hash_settings(int dimensions, const std::vector<std::int32_t>& resolutions,
@@ -242,6 +287,12 @@ void bind_network(py::module_& m) {
           py::arg("inputs"), py::arg("d_outputs"), py::arg("d_parameters"), py::arg("d_inputs"),
           py::arg("fused") = true, py::arg("values") = py::none(),
           "Adds to d_parameters; writes d_inputs unless None. values: of forward, or None.");
+    m.def("perceptrons_forward", &networks_forward, py::arg("shape"), py::arg("parameters"),
+          py::arg("offset"), py::arg("inputs"), py::arg("outputs"),
+          "Writes outputs of inputs (M, shape's): those from offset[n] on by row n of parameters.");
+    m.def("perceptrons_backward", &networks_backward, py::arg("shape"), py::arg("parameters"),
+          py::arg("offset"), py::arg("inputs"), py::arg("d_outputs"), py::arg("d_parameters"),
+          py::arg("d_inputs"), "Adds to d_parameters (rows of parameters); writes d_inputs.");
     bind_encodings(m);
 }
 

@@ -3,7 +3,7 @@
 
 #include "march_args.h"
 #include "module.h"
-#include "photograd/render/march/sample_rows.h"
+#include "sample_args.h"
 
 namespace photograd {
 namespace {
@@ -34,17 +34,6 @@ py::tuple samples_in(const CellTable& table, const MarchSettings& settings,
             return py::make_tuple(rows_of(found.offset, 1), rows_of(found.t, 1),
                                   rows_of(found.point, 3));
         });
-}
-
-/// The rows of `offset`, which must rise from 0 to the number of samples, the axis M.
-SampleRows sample_rows(ArrayArgs& args, const py::array& offset) {
-    const auto* at = args.in<std::int64_t>("offset", offset, "O");
-    const std::int64_t last = args.size("O") - 1;
-    const bool whole = last >= 0 && at[0] == 0 && at[last] == args.size("M");
-    if (!whole || !std::is_sorted(at, at + last + 1))
-        args.range("offset", "numbers that rise from 0 to " + std::to_string(args.size("M")),
-                   "others");
-    return {last, at};
 }
 
 py::tuple weights_of(const py::array& offset, const py::array& sigma_t, double dt) {

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_march(m);
     photograd::bind_geometry(m);
     photograd::bind_reference(m);
+    photograd::bind_raster(m);
     photograd::bind_sdf(m);
     photograd::bind_bsdf(m);
     photograd::bind_principled(m);

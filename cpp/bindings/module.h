@@ -20,6 +20,7 @@ void bind_scene(py::module_& m);
 void bind_path_tangent(py::module_& m);
 void bind_particles(py::module_& m);
 void bind_principled(py::module_& m);
+void bind_raster(py::module_& m);
 void bind_reference(py::module_& m);
 void bind_sdf(py::module_& m);
 void bind_path(py::module_& m);

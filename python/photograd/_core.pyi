@@ -32,6 +32,7 @@ __all__: list[str] = [
     "PreparedRays64",
     "PreparedSplats32",
     "PreparedSplats64",
+    "PreparedTriangles",
     "Quadtree",
     "RayOptions",
     "ReferenceBvh",
@@ -69,6 +70,8 @@ __all__: list[str] = [
     "hash_encode",
     "hash_encode_backward",
     "instruction_set",
+    "interpolate",
+    "interpolate_backward",
     "lights",
     "log1p_unit",
     "march",
@@ -93,6 +96,8 @@ __all__: list[str] = [
     "order_by_depth",
     "perceptron_backward",
     "perceptron_forward",
+    "perceptrons_backward",
+    "perceptrons_forward",
     "phases",
     "philox4x32",
     "place_samples",
@@ -101,6 +106,8 @@ __all__: list[str] = [
     "prepare_splats",
     "principled_values",
     "principled_values_backward",
+    "rasterize",
+    "rasterize_backward",
     "read_vdb",
     "sample",
     "sample_backward",
@@ -116,6 +123,7 @@ __all__: list[str] = [
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "silhouettes",
     "sobol_words",
     "sparse_adam",
     "sparse_sh_weights",
@@ -313,6 +321,28 @@ class BspTree:
     def polygons(self) -> tuple[typing.Any, ...]:
         """
         Points (Q, 3), where each begins (P + 1,), triangles (P,).
+        """
+
+class PreparedTriangles:
+    """
+    Triangles of one view, by tile.
+    """
+    def __init__(
+        self,
+        positions: numpy.ndarray,
+        faces: numpy.ndarray,
+        height: typing.SupportsInt | typing.SupportsIndex,
+        width: typing.SupportsInt | typing.SupportsIndex,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def nearest(
+        self,
+        points: numpy.ndarray,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+        far: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Face (N,) and depth (N,) at points (x, y) of the image.
         """
 
 class Sdf:
@@ -1444,6 +1474,30 @@ def instruction_set() -> str:
     Name of the kernels in use: baseline, v3 or v4.
     """
 
+def interpolate(
+    attributes: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Writes the pixels that see a face.
+    """
+
+def interpolate_backward(
+    attributes: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_attributes: numpy.ndarray,
+    d_barycentrics: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_attributes, writes d_barycentrics where a face is seen.
+    """
+
 def log1p_unit(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable ln(1 + x) for x in [0, 1] on a flat array.
@@ -1661,6 +1715,30 @@ def perceptron_forward(
     Writes outputs of inputs (N, shape's). fused: by the kernel, for float32. Fills values.
     """
 
+def perceptrons_backward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    d_outputs: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_inputs: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_parameters (rows of parameters); writes d_inputs.
+    """
+
+def perceptrons_forward(
+    shape: PerceptronShape,
+    parameters: numpy.ndarray,
+    offset: numpy.ndarray,
+    inputs: numpy.ndarray,
+    outputs: numpy.ndarray,
+) -> None:
+    """
+    Writes outputs of inputs (M, shape's): those from offset[n] on by row n of parameters.
+    """
+
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
     """
     Philox4x32-10 words (N, 4) uint32 of counters (N, 4) under keys (N, 2).
@@ -1733,6 +1811,40 @@ def principled_values_backward(
 ) -> None:
     """
     Adds to d_parameters (T, 5) for d_values (N, 3).
+    """
+
+def rasterize(
+    positions: numpy.ndarray,
+    faces: numpy.ndarray,
+    near: typing.SupportsFloat | typing.SupportsIndex,
+    far: typing.SupportsFloat | typing.SupportsIndex,
+    cull: typing.SupportsInt | typing.SupportsIndex,
+    depth_test: typing.SupportsInt | typing.SupportsIndex,
+    depth_write: bool,
+    stencil_rules: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(7)"
+    ],
+    first_face: typing.SupportsInt | typing.SupportsIndex,
+    face: numpy.ndarray,
+    barycentrics: numpy.ndarray,
+    depth: numpy.ndarray,
+    stencil: typing.Any,
+    overdraw: typing.Any,
+) -> None:
+    """
+    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None.
+    """
+
+def rasterize_backward(
+    positions: numpy.ndarray,
+    faces: numpy.ndarray,
+    face: numpy.ndarray,
+    d_barycentrics: numpy.ndarray,
+    d_depth: numpy.ndarray,
+    d_positions: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_positions.
     """
 
 def read_vdb(
@@ -1863,6 +1975,9 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def silhouettes(
+    positions: numpy.ndarray, ends: numpy.ndarray, opposite: numpy.ndarray, out: numpy.ndarray
+) -> None: ...
 def sobol_words(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,

@@ -33,12 +33,18 @@ JOBS: dict[str, dict[str, Any]] = {
     "nerf": {"resolution": 16, "rays": 16, "steps": 18},
     "plenoctree": {"resolution": 16, "rays": 64, "steps": 5, "degree": 1, "prune": 0.0},
     "leaf_codes": {"rays": 32, "steps": 4},
+    "leaf_mlps": {"resolution": 16, "rays": 32, "steps": 4},
     "gaussians": {"gaussians": 200, "steps": 12},
+    "gaussian_codes": {"steps": 4},
     "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
 }
 
 
-STARTS_FROM = {"sparse_sh": ("octree_sh", "leaf_codes"), "hash_grid": ("plenoctree",)}
+STARTS_FROM = {
+    "sparse_sh": ("octree_sh", "leaf_codes"),
+    "hash_grid": ("plenoctree", "leaf_mlps"),
+    "gaussians": ("gaussian_codes",),
+}
 
 
 def digest(arrays: Mapping[str, Any]) -> str:

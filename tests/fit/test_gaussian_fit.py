@@ -131,7 +131,7 @@ def test_gaussians_begin_on_what_a_model_shows() -> None:
     )
     assert len(again.model.params["means"]) > 100  # a scene of Gaussians shows surfaces, too
     with pytest.raises(
-        RangeError, match="start_from: expected none, or 'gaussians' or 'leaf_codes'"
+        RangeError, match="start_from: expected none, or 'gaussian_codes' or 'gaussians'"
     ):
         Fit.start(capture, grid.options, start_from=seen)
     empty = Fit.start(capture, FitOptions(resolution=16, sigma_t=1e-6)).model

@@ -21,6 +21,7 @@ DESCRIBED = (
     "photograd.capture",
     "photograd.fields",
     "photograd.fitting",
+    "photograd.raster",
     "photograd.representation",
     "photograd.splats",
     "photograd.transport",

@@ -58,7 +58,7 @@ from photograd.transport import (
 )
 from photograd.transport.inverse.loss import loss_and_gradients
 
-from support.network_workload import networks
+from support.raster_workload import LATER
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes
 from tests.transport.scenes import any_material, bent_floor, stage
@@ -297,4 +297,4 @@ def paths() -> None:
     bake_ambient_occlusion(textured(), "floor", 4, spp=1, seed=1)
 
 
-PARTS = (numbers, representations, models, geometry, grids, textures, gaussians, paths, networks)
+PARTS = (numbers, representations, models, geometry, grids, textures, gaussians, paths, *LATER)

@@ -18,6 +18,7 @@
 #include "photograd/ops/sh.h"
 #include "photograd/ops/sh_batch.h"
 #include "photograd/ops/trilinear.h"
+#include "raster_op_list.h"
 #include "ray_op_list.h"
 #include "sdf_op_list.h"
 #include "splat_op_list.h"
@@ -261,6 +262,6 @@ using Ops = TypeList<
     PrincipledOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
     SdfCapsuleOp, SmoothUnionOp, ToShapeOp, RaySphereOp<false>, RaySphereOp<true>, DipoleOp,
     NormalizedDiffusionOp<DiffusionFit::searchlight>, NormalizedDiffusionOp<DiffusionFit::diffuse>,
-    NormalizedDiffusionOp<DiffusionFit::diffuse_free_path>>;
+    NormalizedDiffusionOp<DiffusionFit::diffuse_free_path>, ScreenPointOp>;
 
 }  // namespace photograd

@@ -98,6 +98,18 @@ void with_engine(const PerceptronShape& shape, const R* parameters, bool plain, 
         use(Network<R>(shape, parameters));
 }
 
+/// use(engine, first sample, end, number of its first parameter) for each network with samples.
+template <class R, class Use>
+void for_networks(const PerceptronShape& shape, const R* parameters,
+                  std::span<const std::int64_t> offset, Use&& use) {
+    parallel_for(static_cast<std::int64_t>(offset.size()) - 1, [&](std::int64_t n) {
+        const std::int64_t begin = offset[static_cast<std::size_t>(n)],
+                           end = offset[static_cast<std::size_t>(n) + 1],
+                           first = n * static_cast<std::int64_t>(shape.parameters());
+        if (begin < end) use(Network<R>(shape, parameters + first), begin, end, first);
+    });
+}
+
 }  // namespace
 
 template <class R>
@@ -132,6 +144,28 @@ void perceptron_backward(const PerceptronShape& shape, const R* parameters, std:
     });
 }
 
+template <class R>
+void perceptrons_forward(const PerceptronShape& shape, const R* parameters,
+                         std::span<const std::int64_t> offset, const R* inputs, R* outputs) {
+    for_networks(shape, parameters, offset,
+                 [&](const auto& network, std::int64_t begin, std::int64_t end, std::int64_t) {
+                     forward_chunk(network, begin, end, inputs, outputs, nullptr);
+                 });
+}
+
+template <class R>
+void perceptrons_backward(const PerceptronShape& shape, const R* parameters,
+                          std::span<const std::int64_t> offset, const R* inputs, const R* d_outputs,
+                          R* d_parameters, R* d_inputs) {
+    for_networks(
+        shape, parameters, offset,
+        [&](const auto& network, std::int64_t begin, std::int64_t end, std::int64_t first) {
+            std::vector<double> sums(static_cast<std::size_t>(shape.parameters()));
+            backward_chunk(network, begin, end, inputs, d_outputs, sums, d_inputs, nullptr);
+            for (const double sum : sums) d_parameters[first++] += static_cast<R>(sum);
+        });
+}
+
 template void perceptron_forward(const PerceptronShape&, const float*, std::int64_t, const float*,
                                  float*, bool, PerceptronValues*);
 template void perceptron_forward(const PerceptronShape&, const double*, std::int64_t, const double*,
@@ -141,5 +175,16 @@ template void perceptron_backward(const PerceptronShape&, const float*, std::int
 template void perceptron_backward(const PerceptronShape&, const double*, std::int64_t,
                                   const double*, const double*, double*, double*, bool,
                                   PerceptronValues*);
+
+template void perceptrons_forward(const PerceptronShape&, const float*,
+                                  std::span<const std::int64_t>, const float*, float*);
+template void perceptrons_backward(const PerceptronShape&, const float*,
+                                   std::span<const std::int64_t>, const float*, const float*,
+                                   float*, float*);
+template void perceptrons_forward(const PerceptronShape&, const double*,
+                                  std::span<const std::int64_t>, const double*, double*);
+template void perceptrons_backward(const PerceptronShape&, const double*,
+                                   std::span<const std::int64_t>, const double*, const double*,
+                                   double*, double*);
 
 }  // namespace photograd

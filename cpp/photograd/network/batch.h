@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "photograd/network/engine.h"
 #include "photograd/network/shape.h"
@@ -34,5 +35,18 @@ template <class R>
 void perceptron_backward(const PerceptronShape& shape, const R* parameters, std::int64_t samples,
                          const R* inputs, const R* d_outputs, R* d_parameters, R* d_inputs,
                          bool plain = false, PerceptronValues* values = nullptr);
+
+/// Networks of one shape, each at samples of its own: network n has the samples offset[n] to
+/// offset[n + 1], and a row of parameters (networks, shape.parameters()) [Reiser2021]. A network
+/// runs on one thread. Writes outputs (samples, shape.outputs()).
+template <class R>
+void perceptrons_forward(const PerceptronShape& shape, const R* parameters,
+                         std::span<const std::int64_t> offset, const R* inputs, R* outputs);
+
+/// Evaluates the layers again. Adds to d_parameters; writes d_inputs.
+template <class R>
+void perceptrons_backward(const PerceptronShape& shape, const R* parameters,
+                          std::span<const std::int64_t> offset, const R* inputs, const R* d_outputs,
+                          R* d_parameters, R* d_inputs);
 
 }  // namespace photograd

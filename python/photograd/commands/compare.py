@@ -105,8 +105,8 @@ def compare(
     on where it was.
 
     An octree_sh:N is cut from the grid of N that stands before it, or from --start-from, and
-    refined; a plenoctree:N from the networks before it; leaf_codes:N take the voxels of a grid of
-    N.
+    refined; a plenoctree:N and leaf_mlps:N from the networks before them; leaf_codes:N take the
+    voxels of a grid of N, gaussian_codes:N the Gaussians of N.
 
     Example: photograd compare foliage fur --candidates dense_grid:128,sparse_sh:128
     """

@@ -144,7 +144,9 @@ StartFromOption: TypeAlias = Annotated[
     typer.Option(
         "--start-from",
         help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
-        "plenoctree tabulates, or whose voxels leaf_codes take; or, for a textured_mesh, a mesh "
+        "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
+        "whose Gaussians gaussian_codes take; "
+        "or, for a textured_mesh, a mesh "
         "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
@@ -176,6 +178,17 @@ ResumeOption: TypeAlias = Annotated[
 
 
 DEFAULTS = FitOptions()
+
+
+def _start(capture: Capture, options: FitOptions, first: Model | None, *, allow_blind: bool) -> Fit:
+    """Begin a fit; its warnings become notes."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        job = Fit.start(capture, options, allow_blind=allow_blind, start_from=first)
+    for warning in caught:
+        note(f"warning: {warning.message}")
+    note(job.start_rule)
+    return job
 
 
 def register(app: typer.Typer) -> None:
@@ -251,12 +264,7 @@ def fit(
         chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
-        for warning in caught:
-            note(f"warning: {warning.message}")
-        note(job.start_rule)
+        job = _start(loaded, options, first, allow_blind=allow_blind)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
     emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")

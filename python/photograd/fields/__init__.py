@@ -7,9 +7,11 @@ from photograd_course.suggest import nearest
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
+from photograd.fields.gaussian_codes import GaussianCodes
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.leaf_codes import LeafCodes
+from photograd.fields.leaf_mlps import LeafMlps
 from photograd.fields.nerf import Nerf
 from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
@@ -28,11 +30,13 @@ __all__ = [
     "DenseGrid",
     "DenseSh",
     "Fittable",
+    "GaussianCodes",
     "GaussianScene",
     "Gaussians2D",
     "HashGrid",
     "ImagePolicy",
     "LeafCodes",
+    "LeafMlps",
     "Nerf",
     "NeuralImage",
     "OctreeSh",

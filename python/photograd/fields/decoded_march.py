@@ -15,11 +15,10 @@ The stages of a march, and their adjoints, are in cpp/photograd/render/march/sam
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
-from photograd_course.portable_math import sigmoid, softplus
+from photograd_course.portable_math import sigmoid
 
 from photograd import sh
 from photograd._checks import require_bounds
@@ -34,6 +33,7 @@ from photograd.fields.march import (
     cotangent_arrays,
     require_finite_image,
 )
+from photograd.fields.weighted_samples import WeightedSamples
 from photograd.network import Perceptron
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd.types import Array
@@ -104,21 +104,18 @@ class CodeGrid:
         _core.sample_bricks_backward(self.active.topology, *arrays)
         return d_values.reshape(self.params[group].shape)
 
+    def densities(self, points: Array) -> Array:
+        """(M,) raw density.
+
+        Args:
+            points: (M, 3) in voxels.
+        """
+        return self.at(points, "density")[:, 0]
+
     def _rows(self, group: str) -> tuple[Array, Array]:
         values = np.ascontiguousarray(self.params[group]).reshape(len(self.active), -1)
         outside = self.background_density if group == "density" else 0.0
         return values, np.full(values.shape[1], outside, values.dtype)
-
-    def weights(self, offset: Any, raw: Array) -> tuple[Array, Array, Array]:
-        """Weight (M,), transmittance behind each sample (M,), and of each ray (R,).
-
-        Args:
-            offset: (R + 1,) where the samples of each ray begin.
-            raw: (M,) density.
-        """
-        sigma_t = (self.policy.density_scale * softplus(raw)).astype(raw.dtype)
-        weight, behind, left = _core.sample_weights(offset, sigma_t, self.policy.dt)
-        return weight, behind, left
 
     def decode(self, inputs: Array) -> Array:
         """Colors (M, 3) of codes.
@@ -137,12 +134,7 @@ class CodesContext:
 
     grid: CodeGrid
     directions: Array
-    ray: NDArray[np.int64]  # (M,)
-    offset: NDArray[np.int64]  # (R + 1,)
-    t: Array  # (M,)
-    points: Array  # (M, 3) in voxels
-    raw: Array  # (M,) density
-    weights: tuple[Array, Array, Array]  # weight (M,), behind (M,), transmittance (R,)
+    samples: WeightedSamples
     features: Array  # (M, F)
     inputs: Array  # of the network: (M, F + K), or (R, F + K)
     rgb: Array  # (M, 3), or (R, 3)
@@ -151,7 +143,7 @@ class CodesContext:
     @property
     def sample_count(self) -> int:
         """Number of samples on all rays in cells with an active voxel."""
-        return len(self.t)
+        return len(self.samples.t)
 
 
 def march_codes(
@@ -171,20 +163,12 @@ def march_codes(
         checked_values("LeafCodes.render", name, values)
     settings, kind = grid.policy.settings(options.stop), grid.params["density"].dtype
     rays = checked_rays(batch, settings, options, kind, seed=seed, step=step)
-    offset, t, points = _core.visible_samples(grid.active.table, settings, rays)
-    raw = grid.at(points, "density")[:, 0]
-    weights = grid.weights(offset, raw)
-    if options.stop > 0:
-        kept = weights[0] + weights[1] > options.stop  # transmittance in front, up to rounding
-        offset = np.concatenate([[0], np.cumsum(kept)])[offset]
-        t, points, raw = t[kept], points[kept], raw[kept]
-        weights = grid.weights(offset, raw)
-    features = grid.at(points, "codes")
-    ray = np.repeat(np.arange(len(offset) - 1), np.diff(offset))
-    directions, (weight, _, left) = rays[1], weights
+    found = WeightedSamples.of_rays(grid.policy, grid.active, rays, options.stop, grid.densities)
+    features = grid.at(found.points, "codes")
+    offset, directions, (weight, _, left) = found.offset, rays[1], found.weights
     basis = harmonics(directions)
     if grid.policy.decode == "sample":
-        inputs = np.concatenate([features, basis[ray]], axis=1)
+        inputs = np.concatenate([features, basis[found.ray]], axis=1)
         rgb = grid.decode(inputs)
         color = _core.blend_samples(offset, weight, rgb)
     else:
@@ -192,10 +176,9 @@ def march_codes(
         inputs = np.concatenate([mean, basis], axis=1)
         rgb = grid.decode(inputs)
         color = (1 - left)[:, None] * rgb
-    depth = _core.blend_samples(offset, weight, t[:, None])[:, 0]
+    depth = _core.blend_samples(offset, weight, found.t[:, None])[:, 0]
     require_finite_image(color, left, batch)
-    of_samples = directions, ray, offset, t, points, raw, weights, features, inputs, rgb
-    context = CodesContext(grid, *of_samples, options.camera_adjoint)
+    context = CodesContext(grid, directions, found, features, inputs, rgb, options.camera_adjoint)
     return Outputs(color, 1 - left, depth), context
 
 
@@ -206,15 +189,15 @@ def march_codes_backward(context: CodesContext, d_outputs: Outputs) -> dict[str,
         context: of `march_codes`.
         d_outputs: of the shapes of the outputs.
     """
-    c, grid, kind = context, context.grid, context.t.dtype
-    weight, behind, left = c.weights
+    c, grid, samples, ray = context, context.grid, context.samples, context.samples.ray
+    weight, _, left = samples.weights
     function = "LeafCodes.render_backward"
-    d_color, d_left, d_depth = cotangent_arrays(function, d_outputs, len(left), kind)
-    d_weight = d_depth[c.ray] * c.t
+    d_color, d_left, d_depth = cotangent_arrays(function, d_outputs, len(left), left.dtype)
+    d_weight = d_depth[ray] * samples.t
     per_sample = grid.policy.decode == "sample"
     if per_sample:
-        d_rgb = weight[:, None] * d_color[c.ray]
-        d_weight += (d_color[c.ray] * c.rgb).sum(axis=1)
+        d_rgb = weight[:, None] * d_color[ray]
+        d_weight += (d_color[ray] * c.rgb).sum(axis=1)
     else:
         d_rgb = (1 - left)[:, None] * d_color
         d_left = d_left - (d_color * c.rgb).sum(axis=1)
@@ -225,27 +208,23 @@ def march_codes_backward(context: CodesContext, d_outputs: Outputs) -> dict[str,
     d_features, d_basis = d_inputs[:, :numbers], d_inputs[:, numbers:]
     if not per_sample:
         d_sum = d_features / _share(left)
-        d_features = weight[:, None] * d_sum[c.ray]
-        d_weight += (d_sum[c.ray] * c.features).sum(axis=1)
+        d_features = weight[:, None] * d_sum[ray]
+        d_weight += (d_sum[ray] * c.features).sum(axis=1)
         d_left = d_left + (d_sum * c.inputs[:, :numbers]).sum(axis=1)  # the share is 1 - left
-    d_sigma_t = _core.sample_weights_backward(
-        c.offset, (weight, behind), grid.policy.dt, (d_weight, d_left)
-    )
-    d_density = (grid.policy.density_scale * sigmoid(c.raw) * d_sigma_t).astype(kind)
-    d_points = np.zeros_like(c.points)
+    d_density = samples.d_density(grid.policy, d_weight, d_left)
+    points, d_points = samples.points, np.zeros_like(samples.points)
     gradients = {
-        "density": grid.at_backward(c.points, "density", d_density[:, None], d_points),
-        "codes": grid.at_backward(c.points, "codes", d_features, d_points),
+        "density": grid.at_backward(points, "density", d_density[:, None], d_points),
+        "codes": grid.at_backward(points, "codes", d_features, d_points),
         "decoder": d_decoder,
     }
     if c.camera_adjoint:
         if per_sample:
-            d_basis = _core.blend_samples(c.offset, np.ones_like(weight), _whole(d_basis))
-        lower, upper = np.array(grid.policy.box)
-        d_position = d_points * (np.array(grid.active.shape) / (upper - lower)).astype(kind)
-        gradients["origins"] = _core.blend_samples(c.offset, np.ones_like(weight), d_position)
-        moved = _core.blend_samples(c.offset, c.t, d_position)
-        gradients["directions"] = moved + harmonics_backward(c.directions, d_basis)
+            ones = np.ones_like(weight)
+            d_basis = _core.blend_samples(samples.offset, ones, _whole(d_basis))
+        origins, directions = samples.d_rays(grid.policy.box, grid.active.shape, d_points)
+        gradients["origins"] = origins
+        gradients["directions"] = directions + harmonics_backward(c.directions, d_basis)
     return gradients
 
 

@@ -1,6 +1,7 @@
 """Small multilayer perceptrons and the encodings of their inputs, forward and backward.
 
 * `Perceptron`: weights in one array, evaluated in blocks that stay in the cache.
+* `Perceptrons`: many of one shape, each at inputs of its own.
 * `LayerValues`: what its forward pass may keep for the backward pass.
 * `HashEncoding`: multiresolution hash encoding of points in the unit square or cube.
 * `FrequencyEncoding`, `OneBlobEncoding`: encodings without parameters.
@@ -13,6 +14,7 @@ from __future__ import annotations
 from .encodings import FrequencyEncoding, OneBlobEncoding
 from .hash_encoding import HashEncoding, Level
 from .perceptron import Activation, LayerValues, Perceptron
+from .perceptrons import Perceptrons
 
 __all__ = [
     "Activation",
@@ -22,4 +24,5 @@ __all__ = [
     "Level",
     "OneBlobEncoding",
     "Perceptron",
+    "Perceptrons",
 ]

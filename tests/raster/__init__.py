@@ -1,0 +1,1 @@
+"""The rasterizer and the derivatives of silhouettes."""
