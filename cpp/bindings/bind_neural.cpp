@@ -2,8 +2,8 @@
 #include "march_args.h"
 #include "module.h"
 #include "network_args.h"
-#include "photograd/field/kept_samples.h"
 #include "photograd/field/neural_field.h"
+#include "photograd/render/march/kept_samples.h"
 
 namespace photograd {
 namespace {

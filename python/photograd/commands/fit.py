@@ -180,6 +180,17 @@ ResumeOption: TypeAlias = Annotated[
 DEFAULTS = FitOptions()
 
 
+def _start(capture: Capture, options: FitOptions, first: Model | None, *, allow_blind: bool) -> Fit:
+    """Begin a fit; its warnings become notes."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        job = Fit.start(capture, options, allow_blind=allow_blind, start_from=first)
+    for warning in caught:
+        note(f"warning: {warning.message}")
+    note(job.start_rule)
+    return job
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command("fit")(fit)
@@ -253,12 +264,7 @@ def fit(
         chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
-        for warning in caught:
-            note(f"warning: {warning.message}")
-        note(job.start_rule)
+        job = _start(loaded, options, first, allow_blind=allow_blind)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
     emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")

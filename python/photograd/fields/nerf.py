@@ -81,7 +81,7 @@ class Nerf(NeuralField):
         other.policy = replace(other.policy, importance=count)
         return other
 
-    def _place(
+    def _sampled(
         self, rays: Rays, cells: Array | None, batch: RayBatch, options: RenderOptions, **at: int
     ) -> tuple[Rays, tuple[Array, Array] | None]:
         """Samples by importance, if the policy asks for them, in the span of those of the lattice.

@@ -292,7 +292,7 @@ class NeuralField(Fittable):
         parameters, settings = self._arrays(), self.policy.settings(options.stop)
         rays = checked_rays(batch, settings, options, parameters[1].dtype, seed=seed, step=step)
         cells = self.occupied()
-        rays, placed = self._place(rays, cells, batch, options, seed=seed, step=step)
+        rays, placed = self._sampled(rays, cells, batch, options, seed=seed, step=step)
         kept = _core.NeuralSamples() if options.keep_samples else None
         image = _core.march_neural(self._settings, parameters, cells, settings, rays, kept, placed)
         color, transmittance, depth = image
@@ -301,7 +301,7 @@ class NeuralField(Fittable):
         context = NeuralContext(parameters, cells, *of_rays, kept, placed)
         return Outputs(color, 1 - transmittance, depth), context
 
-    def _place(
+    def _sampled(
         self, rays: Rays, cells: Array | None, batch: RayBatch, options: RenderOptions, **at: int
     ) -> tuple[Rays, tuple[Array, Array] | None]:
         """Rays, and t and width (R, N) of their samples where these leave the lattice."""

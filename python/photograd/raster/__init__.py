@@ -24,6 +24,7 @@ from photograd.raster.edge_sampling import (
     sample_edges,
 )
 from photograd.raster.edges import MeshEdges
+from photograd.raster.footprint import footprints, footprints_backward
 from photograd.raster.lookup import FaceLookup
 from photograd.raster.options import RasterOptions, Stencil
 from photograd.raster.projection import ProjectionGradients, project, project_backward
@@ -44,6 +45,8 @@ __all__ = [
     "edge_gradient",
     "edge_motion_backward",
     "find_crossings",
+    "footprints",
+    "footprints_backward",
     "interpolate",
     "interpolate_backward",
     "polygon_coverage",

@@ -192,7 +192,7 @@ struct BackwardPass {
 
 }  // namespace detail
 
-/// Evaluates each batch, in one cache. Another form is in field/kept_samples.h.
+/// Evaluates each batch, in one cache. Another form is in render/march/kept_samples.h.
 template <class F>
 struct Evaluation {
     const F& field;
