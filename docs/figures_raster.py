@@ -1,7 +1,7 @@
 """How pictures change when triangles move: `python docs/figures_raster.py` writes raster.png.
 
 A point sample and the coverage of a pixel under a moving edge; the gradient of a mesh at each of
-its vertices, through silhouettes and through shading; one derivative by five methods.
+its vertices, through silhouettes and through shading; one derivative from five methods.
 """
 
 from __future__ import annotations
@@ -167,7 +167,7 @@ def draw_arrows(axes: Axes, found: dict[str, Array], term: str, title: str) -> N
 
 
 def draw_bars(axes: Axes) -> None:
-    """One derivative by five methods, with numbers."""
+    """One derivative from five methods, with numbers."""
     found = translation()
     names, heights = list(found), list(found.values())
     colors = [style.GRAY, style.BLUE, style.BLUE, style.ORANGE, style.INK]
