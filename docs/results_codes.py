@@ -208,6 +208,8 @@ def draw(curves: list[Curve]) -> None:
             figure,
             "Held-out views over the seconds of the fit, at equal bytes. A curve begins where the "
             "model that it starts from was finished.",
+            left=0.2,
+            right=6.2,
         )
         save_figure(figure, PICTURE, dpi=100)
 
