@@ -190,7 +190,7 @@ def draw(curves: list[Curve]) -> None:
     """PSNR over seconds, a line each."""
     with style.house_style():
         figure = style.new_figure(6.4, 4.2)
-        axes = style.place_axes(figure, 0.7, 0.95, 5.4, 2.95)
+        axes = style.place_axes(figure, 0.7, 0.2, 5.4, 2.75)
         for curve in curves:
             axes.plot(
                 curve.seconds,
@@ -208,6 +208,8 @@ def draw(curves: list[Curve]) -> None:
             figure,
             "Held-out views over the seconds of the fit, at equal bytes. A curve begins where the "
             "model that it starts from was finished.",
+            left=0.2,
+            right=0.2,
         )
         save_figure(figure, PICTURE, dpi=100)
 
