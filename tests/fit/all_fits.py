@@ -37,6 +37,7 @@ JOBS: dict[str, dict[str, Any]] = {
     "gaussians": {"gaussians": 200, "steps": 12},
     "gaussian_codes": {"steps": 4},
     "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
+    "mesh": {"resolution": 8, "steps": 8},
 }
 
 

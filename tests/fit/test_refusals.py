@@ -29,7 +29,7 @@ from tests.fit import scene
             "tiny_network",
             "one that a capture can start: "
             "'dense_grid' or 'dense_sh' or 'gaussian_codes' or 'gaussians' or 'hash_grid' or "
-            "'leaf_codes' or 'leaf_mlps' or 'nerf' or 'octree_sh' or 'plenoctree' or "
+            "'leaf_codes' or 'leaf_mlps' or 'mesh' or 'nerf' or 'octree_sh' or 'plenoctree' or "
             "'sparse_sh' or 'textured_mesh', "
             "got 'tiny_network'",
         ),

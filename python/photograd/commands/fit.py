@@ -146,7 +146,7 @@ StartFromOption: TypeAlias = Annotated[
         help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
         "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
         "whose Gaussians gaussian_codes take; "
-        "or, for a textured_mesh, a mesh "
+        "or, for a textured_mesh or a mesh, a mesh "
         "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
@@ -230,7 +230,7 @@ def fit(
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
-    comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
+    comment. A fit of a textured_mesh, whose vertices are held, or of a mesh leaves OUT/mesh.glb.
 
     A warning says if all cameras look from nearly one direction, or stand at nearly one place: if
     their longest baseline is below a tenth of their distance from the scene, depth is uncertain.

@@ -12,6 +12,7 @@ from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.hash_grid import HashGrid
 from photograd.fields.leaf_codes import LeafCodes
 from photograd.fields.leaf_mlps import LeafMlps
+from photograd.fields.mesh_surface import MeshSurface
 from photograd.fields.nerf import Nerf
 from photograd.fields.neural_image import ImagePolicy, NeuralImage
 from photograd.fields.octree_sh import OctreeSh
@@ -37,6 +38,7 @@ __all__ = [
     "ImagePolicy",
     "LeafCodes",
     "LeafMlps",
+    "MeshSurface",
     "Nerf",
     "NeuralImage",
     "OctreeSh",

@@ -1,0 +1,399 @@
+"""A triangle mesh whose vertices and colors are both recovered, drawn by the rasterizer.
+
+    x     = (I + lambda L)^-1 u                     vertices, as [Nicolet2021] parameterizes them
+    image = antialias(interpolate(sigmoid(c)))      color, opacity and depth, edges blended
+
+The faces are held: a surface keeps the topology that it starts with. `surface_picture` draws it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.atomic_io import atomic_write
+from photograd_course.color import srgb_decode
+from photograd_course.portable_math import sigmoid
+from photograd_course.random import normal_vectors, uniform
+
+from photograd._arrays import Arguments
+from photograd._checkpoint import FLOAT, Row
+from photograd._checks import from_plain, require_bounds
+from photograd._fit_options import FitOptions
+from photograd._gltf_bytes import GltfBytes
+from photograd.capture.frames import invert_rigid
+from photograd.capture.orbit import orbit_cameras
+from photograd.errors import RangeError, SceneError, message
+from photograd.fields.surface_picture import SurfacePicture
+from photograd.fields.textured_mesh import UNLIT, TexturedMesh
+from photograd.geometry.icosphere import icosphere
+from photograd.geometry.large_steps import LargeSteps
+from photograd.geometry.mesh import Mesh
+from photograd.raster import MeshEdges
+from photograd.representation import (
+    COPIES,
+    Fittable,
+    ImageBatch,
+    Memory,
+    Outputs,
+    ParamSpec,
+    RenderOptions,
+    Start,
+    register,
+)
+from photograd.types import Array, FloatArray
+
+VERTEX_RATE = 0.02
+"""Adam's rate of u, in extents of the mesh."""
+
+
+@dataclass(frozen=True)
+class SurfacePolicy:
+    """How the vertices of a mesh are parameterized.
+
+    smoothness: lambda of `LargeSteps`; 0 moves each vertex by itself.
+    extent: size of the scene in meters; the learning rate of the vertices is in units of it.
+
+    Raises:
+        RangeError: a negative smoothness or extent, or one that is not finite.
+    """
+
+    smoothness: float = 10.0
+    extent: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_bounds(self, "smoothness", "extent", low=0)
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceContext:
+    """What the backward pass needs."""
+
+    picture: SurfacePicture
+    camera_adjoint: bool
+
+
+@register
+class MeshSurface(Fittable):
+    """params["differential"] (V, 3) meters: u = (I + lambda L) x of the vertices x.
+    params["color_logits"] (V, 3): the display color of a vertex is sigmoid of it.
+
+    Both sides of a triangle are seen. An edge may have one face or two. It calculates in float64.
+
+    Attributes:
+        faces: (F, 3) uint32, held.
+        policy: how the vertices are parameterized.
+    """
+
+    name: ClassVar[str] = "mesh"
+    capabilities: ClassVar[frozenset[str]] = frozenset({"image"})
+    color_space: ClassVar[str] = "display"
+    first_model: ClassVar[Literal["refused", "optional", "required"]] = "optional"
+    first_model_kinds: ClassVar[tuple[str, ...]] = ("mesh", "textured_mesh")
+    same_resolution: ClassVar[bool] = False
+    first_model_help: ClassVar[str] = "or without one, from a sphere"
+    row_updates: ClassVar[bool] = False
+    counts: ClassVar[str] = "sphere"
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 16, "steps": 1000}
+    export_suffixes: ClassVar[tuple[str, ...]] = (".glb", ".npz")
+    exported_as: ClassVar[str] = "mesh.glb"
+
+    def __init__(
+        self,
+        differential: Array,
+        color_logits: Array,
+        faces: Array,
+        policy: SurfacePolicy | None = None,
+    ) -> None:
+        """`of_mesh` takes vertices.
+
+        Args:
+            differential: (V, 3) u, float32 or float64.
+            color_logits: (V, 3), of the same type.
+            faces: (F, 3) vertex numbers.
+            policy: of the parameterization; None takes the default.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: arrays of other types or shapes, values that are
+                not finite, numbers that name no vertex.
+            SceneError: a face with one vertex twice, or an edge of three faces or more.
+        """
+        call = Arguments("MeshSurface")
+        differential = call.array("differential", differential, ("V", 3), min_length=1)
+        count = len(differential)
+        logits = call.array("color_logits", color_logits, (count, 3), dtype=differential.dtype)
+        faces = call.array(
+            "faces", faces, ("F", 3), dtype=np.uint32, low=0, high=count - 1, min_length=1
+        )
+        self.params = {"differential": differential, "color_logits": logits}
+        self.faces: npt.NDArray[np.uint32] = faces
+        self.policy = policy or SurfacePolicy()
+        self._edges = _manifold_edges(faces)
+        self._steps = LargeSteps(self._edges.ends, count, self.policy.smoothness)
+
+    @classmethod
+    def of_mesh(
+        cls,
+        vertices: Array,
+        faces: Array,
+        color_logits: Array | None = None,
+        *,
+        smoothness: float = 10.0,
+        dtype: type[np.floating[Any]] = np.float32,
+    ) -> Self:
+        """The parameters of a mesh, by default middle gray.
+
+        Args:
+            vertices: (V, 3) in the world, meters.
+            faces: (F, 3) vertex numbers.
+            color_logits: (V, 3), or None for zeros.
+            smoothness: lambda of `LargeSteps`.
+            dtype: of the parameters.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: as for the class.
+            SceneError: as for the class, or a triangle without area.
+        """
+        call = Arguments("MeshSurface.of_mesh", np.float64)
+        vertices = call.array("vertices", vertices, ("V", 3), min_length=1)
+        high = len(vertices) - 1
+        faces = call.array("faces", faces, ("F", 3), dtype=np.uint32, low=0, high=high)
+        a, b, c = (vertices[faces[:, k]] for k in range(3))
+        flat = np.flatnonzero(~np.cross(b - a, c - a).any(axis=1))
+        if len(flat):
+            got = f"{len(flat)} without, the first face {flat[0]}"
+            raise SceneError(message("MeshSurface.of_mesh", "faces", "triangles with area", got))
+        extent = float(np.sqrt(np.square(np.ptp(vertices, axis=0)).sum()))
+        policy = SurfacePolicy(smoothness, extent)
+        steps = LargeSteps(_manifold_edges(faces).ends, len(vertices), smoothness)
+        logits = np.zeros_like(vertices) if color_logits is None else np.asarray(color_logits)
+        return cls(steps.times(vertices).astype(dtype), logits.astype(dtype), faces, policy)
+
+    @classmethod
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Self:
+        """An icosahedron, its vertices and colors random."""
+        sphere = icosphere(1)
+        rows = np.arange(len(sphere.vertices))
+        shift, logits = (normal_vectors(seed, step=2, row=rows, sample=k) for k in range(2))
+        vertices = 0.7 * sphere.vertices.astype(np.float64) + 0.05 * shift
+        return cls.of_mesh(vertices, sphere.faces, logits, smoothness=0.5, dtype=dtype)
+
+    def example_batch(self, *, seed: int) -> ImageBatch:
+        """A picture of 8 x 7 pixels from some meters away."""
+        box = np.array([[-0.8, -0.8, -0.8], [0.8, 0.8, 0.8]])
+        camera = list(orbit_cameras(box, 5, size=8, elevation=20.0))[seed % 5]
+        # No vertex or edge at the center of a pixel.
+        shift = float(uniform(seed, step=3, pixel=0, sample=0, dimension=0))
+        low = replace(camera, height=7, cy=camera.cy - 0.5 + 0.1 * shift)
+        pose = invert_rigid(low.world_from_camera)[:3]
+        return ImageBatch(low, np.ascontiguousarray(pose))
+
+    @property
+    def vertices(self) -> FloatArray:
+        """(V, 3) float64 in the world, meters."""
+        return self._steps.solve(self.params["differential"].astype(np.float64))
+
+    @property
+    def mesh(self) -> Mesh:
+        """Vertices and faces, for tracing rays."""
+        return Mesh(self.vertices, self.faces)
+
+    def colors(self) -> FloatArray:
+        """(V, 3) float64 display colors of the vertices, in (0, 1)."""
+        found: FloatArray = sigmoid(self.params["color_logits"].astype(np.float64))
+        return found
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) corners of the mesh in world meters."""
+        vertices = self.vertices
+        return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+
+    @property
+    def resolution(self) -> int:
+        """Divisions of an icosahedron's edge that give about as many vertices."""
+        divisions = math.sqrt(max(len(self.params["differential"]) - 2, 0) / 10)
+        return max(1, round(divisions))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(V, F), the numbers of vertices and faces."""
+        return len(self.params["differential"]), len(self.faces)
+
+    def param_groups(self) -> Mapping[str, ParamSpec]:
+        """Both have a row a vertex."""
+        shape = self.params["differential"].shape
+        extent = self.policy.extent
+        far = 1e3 * max(extent, 1.0) * (1 + self.policy.smoothness)
+        rate = max(VERTEX_RATE * extent, 1e-12)
+        return {
+            "differential": ParamSpec(shape, "m", (-far, far), rate, "world"),
+            "color_logits": ParamSpec(shape, "1", (-20.0, 20.0), 0.05, "none"),
+        }
+
+    def render(
+        self, batch: ImageBatch, *, seed: int, step: int, options: RenderOptions
+    ) -> tuple[Outputs, SurfaceContext]:
+        """Color (P, 3), opacity (P,) and depth (P,) of all pixels, row by row."""
+        del seed, step  # nothing random here
+        picture = SurfacePicture.of(self.vertices, self.colors(), self.faces, self._edges, batch)
+        rows = picture.image.reshape(-1, 5).astype(self.params["color_logits"].dtype)
+        color, opacity, depth = rows[:, :3], rows[:, 3], rows[:, 4]
+        outputs = Outputs(*(np.ascontiguousarray(part) for part in (color, opacity, depth)))
+        return outputs, SurfaceContext(picture, options.camera_adjoint)
+
+    def render_backward(self, context: SurfaceContext, d_outputs: Outputs) -> dict[str, Array]:
+        """dL/d params, and "camera_from_world" (3, 4) if the options asked."""
+        height, width, _ = context.picture.image.shape
+        given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
+        parts = [
+            np.zeros((height, width, channels))
+            if d is None
+            else np.asarray(d, np.float64).reshape(height, width, channels)
+            for d, channels in given
+        ]
+        d_image = np.concatenate(parts, axis=-1)
+        found = context.picture.backward(d_image)
+        colors = context.picture.colors
+        gradients: dict[str, Array] = {
+            "differential": self._steps.solve(found.vertices),
+            "color_logits": found.colors * colors * (1 - colors),
+        }
+        if context.camera_adjoint:
+            gradients["camera_from_world"] = found.camera_from_world
+        dtype = self.params["color_logits"].dtype
+        return {name: gradient.astype(dtype) for name, gradient in gradients.items()}
+
+    # What a fit asks.
+
+    @classmethod
+    def start(cls, start: Start) -> tuple[Self, str]:
+        """The mesh of the first model, or the largest ellipsoid in the box.
+
+        Raises RangeError for a model without a mesh, SceneError for one that is not manifold.
+        """
+        first = start.field
+        if first is None:
+            low, high = start.bounds.box
+            sphere = icosphere(start.options.resolution)
+            vertices = (low + high) / 2 + (high - low) / 2 * sphere.vertices.astype(np.float64)
+            field = cls.of_mesh(vertices, sphere.faces)
+        elif isinstance(first, MeshSurface):
+            logits = first.params["color_logits"]
+            field = cls.of_mesh(
+                first.vertices, first.faces, logits, smoothness=first.policy.smoothness
+            )
+        elif isinstance(first, TexturedMesh):
+            field = cls.of_mesh(*_without_seams(first.mesh))
+        else:
+            expected = f"a model of {' or '.join(cls.first_model_kinds)}"
+            raise RangeError(
+                message("Fit.start", "start_from", expected, repr(first.name), cls.first_model_help)
+            )
+        source = "ellipsoid in the box" if first is None else f"that of the {first.name}"
+        return field, f"mesh: {source}, {len(field.faces):,} triangles"
+
+    @classmethod
+    def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
+        """A row a vertex; the faces."""
+        del options
+        rows: dict[str, Row] = {
+            "differential": (FLOAT, ("V", 3)),
+            "color_logits": (FLOAT, ("V", 3)),
+        }
+        return rows, {"faces": (("uint32",), ("F", 3))}
+
+    @classmethod
+    def restored(
+        cls,
+        params: Mapping[str, Array],
+        state: Mapping[str, Array],
+        policy: object,
+        options: FitOptions,
+    ) -> Self:
+        """The mesh of a checkpoint."""
+        del options
+        told = from_plain("checkpoint", SurfacePolicy, policy)
+        return cls(params["differential"], params["color_logits"], state["faces"], told)
+
+    @classmethod
+    def memory(cls, box: Array, options: FitOptions, available: int) -> Sequence[Memory]:
+        """Of the vertices and the faces of a sphere."""
+        del box
+        size = (COPIES * 4 * 6 * 10 + 12 * 20) * options.resolution**2
+        fits = int(options.resolution * float(np.sqrt(min(1.0, available / (2 * size)))))
+        what = f"a sphere of {20 * options.resolution**2:,} triangles"
+        return (Memory("resolution", what, size, f"--resolution {fits} takes half of it"),)
+
+    def state(self) -> dict[str, Array]:
+        """The faces, which no fit changes."""
+        return {"faces": self.faces}
+
+    def load_state(self, state: Mapping[str, Array]) -> None:
+        """Raises RangeError unless `state` is that of the same mesh."""
+        if set(state) != {"faces"} or not np.array_equal(state["faces"], self.faces):
+            where = "MeshSurface.load_state"
+            raise RangeError(message(where, "state", "this mesh's ['faces']", f"{sorted(state)}"))
+
+    def stored(self) -> dict[str, Array]:
+        """Vertices in meters, linear colors and faces."""
+        return {
+            "vertices": self.vertices.astype(np.float32),
+            "colors": srgb_decode(self.colors()).astype(np.float32),
+            "faces": self.faces,
+        }
+
+    def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
+        """Write a .glb file with the colors of the vertices, or all arrays to an .npz file."""
+        if path.suffix.lower() != ".glb":
+            return super().export(path, background)
+        file, arrays = GltfBytes(), self.stored()
+        material = {
+            "name": "radiance",
+            "pbrMetallicRoughness": {"metallicFactor": 0.0},
+            "doubleSided": True,
+            "extensions": {UNLIT: {}},
+        }
+        part = {
+            "attributes": {
+                "POSITION": file.attribute(arrays["vertices"], bounds=True),
+                "COLOR_0": file.attribute(arrays["colors"]),
+            },
+            "indices": file.indices(self.faces),
+            "material": file.entry("materials", material),
+        }
+        node = {"mesh": file.entry("meshes", {"name": "mesh", "primitives": [part]})}
+        file.root |= {"nodes": [node], "scenes": [{"nodes": [0]}], "scene": 0}
+        file.root["extensionsUsed"] = [UNLIT]
+        atomic_write(path, file.glb())
+        return (f"its vertex colors are radiance: {UNLIT} shows them without lights",)
+
+
+def _manifold_edges(faces: Array) -> MeshEdges:
+    """The edges of faces (F, 3).
+
+    Raises SceneError where a face has one vertex twice, or an edge three faces or more.
+    """
+    a, b, c = faces.T
+    twice = np.flatnonzero((a == b) | (b == c) | (c == a))
+    if len(twice):
+        got = f"{len(twice)} with one vertex twice, the first face {twice[0]}"
+        raise SceneError(message("MeshSurface", "faces", "triangles of three vertices", got))
+    edges = MeshEdges.of(faces)
+    if edges.crowded:
+        first = edges.ends[edges.inner < 0][0].tolist()
+        got = f"{edges.crowded} with more, the first between vertices {first[0]} and {first[1]}"
+        remedy = "repair the mesh: it is not manifold"
+        raise SceneError(message("MeshSurface", "faces", "edges of one or two faces", got, remedy))
+    return edges
+
+
+def _without_seams(mesh: Mesh) -> tuple[Array, Array]:
+    """Vertices and faces, the vertices at one position merged into one."""
+    vertices, which = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
+    return vertices, which.reshape(-1)[mesh.faces]
