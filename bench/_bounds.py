@@ -93,6 +93,12 @@ def bsdf_bound(evaluations: int) -> dict[str, Any]:
     )
 
 
+def raster_bound(triangles: int, res: int) -> dict[str, Any]:
+    """W9: 60 flop to set up a triangle, 20 a pixel and layer of two; the gradient is free."""
+    work = slowest({"flop": 60 * triangles + 40 * res * res})
+    return _row(work, work)
+
+
 def splat_bound(contributions: int) -> dict[str, Any]:
     """W8: a pixel and a Gaussian that adds to it take 24 flop and one exp forward, 100 more back.
 

@@ -27,6 +27,7 @@ RECORDED = {
     "W6b n=128 res=128 views=4": "54d7fd96b0050b75",
     "W6b n=32 res=16 views=1": "8572acd7267ff727",
     "W8 n=100000 res=512": "58aff03f9ae90801",
+    "W9 nv=132": "17c26eaf121b8b47",
     "W10 evals=10000000 scalar 1024": "118bf309f8e2f4ff",
     "W10 evals=10000000 texture 1024": "8a436409dee41dd0",
     "W10 evals=2000 scalar 20": "f1e0f5d78c888c36",

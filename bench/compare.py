@@ -71,6 +71,8 @@ PEERS = [
     Peer("W7a", "torch", "w7_hash_torch.py", "torch"),
     Peer("W7b", "torch", "w7_nerf_torch.py", "torch"),
     Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
+    Peer("W9", "mitsuba-llvm-direct_projective", "w9_raster_mitsuba.py", "mi"),
+    Peer("W9-forward", "pyrender-osmesa", "w9_raster_pyrender.py", "gl"),
     Peer("W10", "mitsuba-llvm", "w10_bsdf_mitsuba.py", "mi"),
     Peer("W10", "torch", "w10_bsdf_torch.py", "torch"),
     Peer("W10", "torch-compile", "w10_bsdf_torch.py", "torch", ("--compile", "1")),

@@ -1,22 +1,22 @@
 """Learn, freeze the structure, refine: `python docs/results_freeze.py CAPTURE`.
 
 The same driver for each representation whose structure is discrete: a sparse grid and what takes
-its voxels, a field of networks and what is tabulated from it. Rewrites a section of
-docs/results.md.
+its voxels, a field of networks and what is tabulated or distilled from it, Gaussians and what takes
+them. Rewrites a section of docs/results.md.
 """
 
 from __future__ import annotations
 
 import argparse
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from photograd._compiled import _core
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.fit import run_with_bar
-from photograd.fitting.freeze import learn_freeze_refine
+from photograd.fitting.freeze import Moment, learn_freeze_refine
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 from photograd.fitting.options import options_for
@@ -30,6 +30,9 @@ STEPS = (  # representation, what it starts from
     ("leaf_codes", "sparse_sh"),
     ("hash_grid", None),
     ("plenoctree", "hash_grid"),
+    ("leaf_mlps", "hash_grid"),
+    ("gaussians", None),
+    ("gaussian_codes", "gaussians"),
 )
 
 
@@ -51,9 +54,14 @@ def rows_of(
     """Both moments of a fit in `folder`, which starts from the model in `source`."""
     first = None if source is None else load_model(source)
     fit = Fit.start(capture, options_for(name, **changes), start_from=first)
-    found = learn_freeze_refine(fit, folder, run=run_with_bar)
-    assert found is not None
-    moments = (f"frozen, step {found.frozen.step}", found.frozen), ("refined", found.refined)
+    moments: list[tuple[str, Moment]]
+    if fit.model.frozen_at(fit.options) is None:
+        result = run_with_bar(fit, folder, lambda: False)
+        moments = [("fitted", Moment.of_fit(fit, result.seconds))]
+    else:
+        found = learn_freeze_refine(fit, folder, run=run_with_bar)
+        assert found is not None
+        moments = [(f"frozen, step {found.frozen.step}", found.frozen), ("refined", found.refined)]
     return [
         Row(name, moment, at.psnr, at.bytes / 2**20, at.frame_ms, at.seconds)
         for moment, at in moments
@@ -84,18 +92,25 @@ def main() -> None:
     parser.add_argument("--resolution", type=int, help="Of grids and trees.", default=128)
     parser.add_argument("--steps", type=int, help="Of each fit; default: its own.")
     parser.add_argument("--rays", type=int, help="In a step; default: its own.")
+    parser.add_argument("--gaussians", type=int, help="At most so many; default: their own.")
+    parser.add_argument("--views", type=int, help="Held-out views; default: all.")
     args = parser.parse_args()
     capture = load_capture(args.capture, downscale=args.downscale)
+    views = capture.test[:: max(1, len(capture.test) // (args.views or len(capture.test)))]
+    capture = replace(capture, test=views[: args.views])
     rows: list[Row] = []
     with tempfile.TemporaryDirectory() as folder:
         for name, source in STEPS:
             size = None if name == "hash_grid" else args.resolution
             changes = {"resolution": size, "steps": args.steps, "rays": args.rays}
+            changes["gaussians"] = args.gaussians if name == "gaussians" else None
             before = None if source is None else Path(folder) / source
             rows += rows_of(capture, name, before, Path(folder) / name, **changes)
     text = RESULTS.read_text()
     start, stop = text.index(BEGIN) + len(BEGIN), text.index(END)
-    section = table(args.capture.name, rows)
+    camera = views[0].camera
+    size = f"{camera.width} x {camera.height} pixels, {len(capture.test)} held-out views"
+    section = table(f"{args.capture.name}, {size}", rows)
     RESULTS.write_text(f"{text[:start]}\n{section}\n{text[stop:]}")
 
 

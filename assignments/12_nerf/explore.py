@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A scene in a network
-# Photographs a scene defined by formulas, trains your network, and shows held-out views, normals
-# and a slice of the density. Never graded. `python explore.py` takes `--views`, `--pixels`,
+# Photographs a scene defined by formulas, trains your network, and shows held-out views and a
+# slice of the density. Never graded. `python explore.py` takes `--views`, `--pixels`,
 # `--steps`, `--bands` (of points), `--coarse` and `--fine` (distances on each ray), `--width` of
 # the hidden layers, and `--capture DIR`: a folder with `transforms.json` and its images. For a
 # capture, `--near` and `--far` are the distances between which the scene lies.

@@ -75,7 +75,7 @@ def fig2_encoding(module):
         "four bands are more than 8 dB better than none": Fact(
             scores[2] - scores[0], 8, 40, red="backward_no_relu"
         ),
-        "at pixels in training more bands are better": Fact(
+        "at pixels in training up to six bands are better than fewer": Fact(
             inside[0] < inside[1] < inside[2] < inside[3], red="backward_no_relu"
         ),
         "between them ten bands are more than 5 dB worse than four": Fact(
@@ -139,6 +139,7 @@ def fig3_distances(module):
     panels[2].set_xlim(near, far)
     for axes in panels:
         plain_axes(axes)
+        axes.set_axisbelow(True)
     return figure, facts
 
 

@@ -38,7 +38,7 @@ Losses = Annotated[np.ndarray, "steps"]
 Layers = list[np.ndarray]  # W0, b0, W1, b1, ...
 Activations = list[np.ndarray]  # the input of each layer, and the output of the last
 Network = dict[str, Layers]
-Views = dict[str, np.ndarray]
+Views = dict[str, np.ndarray | float]
 
 BANDS = 4  # frequencies of the encoding of points
 DIRECTION_BANDS = 2  # and of directions
@@ -320,11 +320,11 @@ def fit_picture(picture, bands, steps, rng, width=32):
 
 
 def draw(views, rng):
-    """Given: the random numbers of one step, (chosen, u, v).
+    """Given: the random numbers of one step, (chosen, u, u_fine).
 
     Returns:
-        chosen (R,), RAYS different rays, all if there are fewer; u (R, COARSE) and v (R, FINE),
-        uniform numbers for the two calls of `sample_distances`, in this order.
+        chosen (R,), RAYS different rays, all if there are fewer; u (R, COARSE) and u_fine
+        (R, FINE), uniform numbers for the two calls of `sample_distances`, in this order.
     """
     total = len(views["colors"])
     chosen = rng.choice(total, min(RAYS, total), replace=False)
@@ -343,7 +343,7 @@ def train_nerf(
 
     Args:
         views: P rays.
-        network: the initial guess; its arrays must not change.
+        network: the initial guess; its arrays must not change. After 0 steps it may be returned.
         steps: the number of steps, 0 or more.
         rng: a numpy.random.Generator, for `draw` alone.
 
@@ -355,14 +355,14 @@ def train_nerf(
     losses, adam = np.zeros(steps), Adam()
     near, far = views["near"], views["far"]
     for step in range(steps):
-        chosen, u, v = draw(views, rng)
+        chosen, u, u_fine = draw(views, rng)
         batch = take(views, chosen)
         whole = np.tile([near, far], (len(chosen), 1))
         coarse = sample_distances(whole, np.ones((len(chosen), 1)), u)
         edges = edges_between(coarse, near, far)
         sigma = radiance_field(network, *points_on(batch, coarse))[0].reshape(coarse.shape)
         weights = ray_weights(sigma, np.diff(edges, axis=1)) + PADDING
-        fine = sample_distances(edges, weights, v)
+        fine = sample_distances(edges, weights, u_fine)
         t = np.sort(np.concatenate([coarse, fine], axis=1), axis=1)
         losses[step], d_network = loss_and_grad(network, batch, t)
         network = adam.step(network, d_network)

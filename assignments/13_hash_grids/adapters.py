@@ -5,6 +5,7 @@ copies. A second call shows whether one was changed.
 """
 
 import hash_grids as grids
+import numpy as np
 
 
 def derivatives(points, target, levels, table, weights):
@@ -13,6 +14,14 @@ def derivatives(points, target, levels, table, weights):
     answer = grids.network_loss_and_grad(weights, encoded, target)
     d_table = grids.encode_backward(points, table, levels, answer[2])[0]
     return answer[0], d_table, answer[1]
+
+
+def kept_by_adam(table, d_table, m, v, k, rate):
+    """1.0 for each of the four arrays that `adam_rows` leaves as it was, 0.0 for the others."""
+    given = table, d_table, m, v
+    before = [array.copy() for array in given]
+    grids.adam_rows(*given, k, rate)
+    return np.array([float(np.array_equal(a, b)) for a, b in zip(given, before, strict=True)])
 
 
 def train_again(*given):

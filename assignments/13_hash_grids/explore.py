@@ -2,9 +2,10 @@
 # # A picture, a network and a hash grid
 # Trains your hash grid and a plain network on a picture for the same time by the clock, tabulates
 # the network in leaves and fine-tunes them. Where the C++ core is installed, its hash encoding
-# stands beside yours. Never graded. `python explore.py` takes `--seconds` for each of the two,
-# `--size` (pixels along a side), `--log2` (rows of a level, as a power of two), `--finest` (cells
-# of the finest level), `--cells` (of the leaves) and `--image FILE`, a photograph of your own.
+# stands beside yours. Never graded. `python explore.py` takes `--seconds` for each of the two or
+# `--steps` of the hash grid (the network makes four times as many), `--size` (pixels along a
+# side), `--log2` (rows of a level, as a power of two), `--finest` (cells of the finest level),
+# `--cells` (of the leaves) and `--image FILE`, a photograph of your own.
 
 # %%
 import importlib
@@ -16,7 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from photograd_course.explore import option
 
-seconds, size, log2 = option("seconds", 8.0), option("size", 256), option("log2", 14)
+seconds, steps = option("seconds", 8.0), option("steps", 0)
+size, log2 = option("size", 256), option("log2", 14)
 finest, cells, image = option("finest", 256), option("cells", 64), option("image", "")
 BATCH = 4096  # points of a step
 
@@ -50,7 +52,7 @@ def decibels(colors):
 
 # %% [markdown]
 # ## Both for the same time
-# Ten steps tell how many the time allows.
+# Ten steps tell how many the time allows, unless `--steps` says it.
 
 # %%
 rng = np.random.default_rng(0)
@@ -64,27 +66,30 @@ weights = mine.start_weights((2 + 4 * octaves, 64, 64, 3), rng)
 print(f"levels {resolutions}, {table.size} numbers in the table")
 
 
-def trained(train, state):
-    """(state, steps) after as many steps as take the given seconds, by the time of ten."""
-    before = time.perf_counter()
-    train(state, rng.integers(0, len(points), (10, BATCH)))
-    steps = max(round(10 * seconds / (time.perf_counter() - before)), 10)
+def trained(train, state, steps):
+    """(state, steps) after some steps; for 0 as many as take the given seconds, by ten of them."""
+    if not steps:
+        before = time.perf_counter()
+        train(state, rng.integers(0, len(points), (10, BATCH)))
+        steps = max(round(10 * seconds / (time.perf_counter() - before)), 10)
     return train(state, rng.integers(0, len(points), (steps, BATCH))), steps
 
 
-(table, decoder), steps = trained(
-    lambda s, b: mine.train_hash_grid(points, target, b, levels, *s, 0.02)[:2], (table, decoder)
+(table, decoder), count = trained(
+    lambda s, b: mine.train_hash_grid(points, target, b, levels, *s, 0.02)[:2],
+    (table, decoder),
+    steps,
 )
 ours = mine.network(decoder, mine.encode(points, table, levels))
 weights, others = trained(
-    lambda w, b: mine.train_network(points, target, b, octaves, w, 0.005)[0], weights
+    lambda w, b: mine.train_network(points, target, b, octaves, w, 0.005)[0], weights, 4 * steps
 )
 plain = mine.network(weights, mine.frequencies(points, octaves))
 for name, colors, number, parameters, used in (
     (
         "hash grid",
         ours,
-        steps,
+        count,
         table.size + mine.numbers_per_point(decoder),
         mine.numbers_per_point(decoder, levels, 2),
     ),
@@ -143,8 +148,8 @@ figure = Figure(figsize=(15, 10.4), layout="constrained")
 panels = figure.subplots(2, 3).ravel()
 shown = (
     ("picture", target),
-    (f"network, {seconds:g} s, {decibels(plain):.1f} dB", plain),
-    (f"your hash grid, {seconds:g} s, {decibels(ours):.1f} dB", ours),
+    (f"network, {others} steps, {decibels(plain):.1f} dB", plain),
+    (f"your hash grid, {count} steps, {decibels(ours):.1f} dB", ours),
     (f"{len(values)} leaves of the network, {decibels(leaves):.1f} dB", leaves),
     (f"fine-tuned, {decibels(again):.1f} dB", again),
     ("the error of your hash grid, 5 times", 5 * np.abs(ours - target)),

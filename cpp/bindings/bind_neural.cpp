@@ -2,8 +2,8 @@
 #include "march_args.h"
 #include "module.h"
 #include "network_args.h"
-#include "photograd/field/kept_samples.h"
 #include "photograd/field/neural_field.h"
+#include "photograd/render/march/kept_samples.h"
 
 namespace photograd {
 namespace {
@@ -49,6 +49,7 @@ struct NeuralSamples {
         return std::get<KeptSamples<R>>(kept);
     }
 };
+using Samples = std::optional<std::shared_ptr<NeuralSamples>>;
 
 /// use(field) with the field over `parameters`.
 template <class R, class Use>
@@ -74,23 +75,41 @@ void with_neural(ArrayArgs& args, const NeuralSettings& s, const NeuralArrays& p
                        options});
 }
 
+using PlacedArrays = std::optional<Arrays<2>>;  // t (R, N), width (R, N)
+
+template <class R>
+PlacedSamples<R> placed_samples(ArrayArgs& args, const PlacedArrays& from,
+                                const RayBatch<R>& rays) {
+    if (!from) return {};
+    PlacedSamples<R> placed{args.within<R>("t", (*from)[0], "R N", world_limit),
+                            args.within<R>("width", (*from)[1], "R N", world_limit),
+                            args.size("N")};
+    for (std::int64_t ray = 0; ray < rays.count; ++ray)
+        if (rays.samples[ray] > placed.stride)
+            args.range("samples", "at most " + std::to_string(placed.stride) + " of a ray",
+                       std::to_string(rays.samples[ray]) + " in row " + std::to_string(ray));
+    return placed;
+}
+
 py::tuple march_neural(const NeuralSettings& s, const NeuralArrays& parameters,
                        const std::optional<py::array>& occupancy, const MarchSettings& settings,
-                       const RayArrays& ray_arrays, NeuralSamples* keep) {
+                       const RayArrays& ray_arrays, const Samples& keep,
+                       const PlacedArrays& placed_arrays) {
     return dispatch_real(
         "march_neural", "density", parameters[1], [&](auto real, ArrayArgs& args) -> py::tuple {
             using R = decltype(real);
             const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+            const PlacedSamples<R> placed = placed_samples(args, placed_arrays, rays);
             py::tuple image;
             with_neural<R>(args, s, parameters, occupancy, settings.field, [&](const auto& field) {
                 image =
                     filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
-                        if (!keep) return march(field, rays, settings.march, out);
-                        auto& kept = keep->of<R>();
-                        kept.start(field, rays);
+                        KeptSamples<R> none;
+                        KeptSamples<R>& kept = keep ? (*keep)->of<R>() : none;
+                        if (keep) kept.start(field, rays);
                         march_by<NeuralField<R>>(
                             [&](std::int64_t chunk) { return kept.keeping(field, chunk); }, rays,
-                            settings.march, out);
+                            settings.march, out, placed);
                     });
             });
             return image;
@@ -101,11 +120,13 @@ void march_neural_backward(const NeuralSettings& s, const NeuralArrays& paramete
                            const std::optional<py::array>& occupancy, const MarchSettings& settings,
                            const RayArrays& ray_arrays, const Arrays<3>& outputs,
                            const Arrays<3>& d_outputs, NeuralArrays d_parameters,
-                           const std::optional<Arrays<2>>& d_rays, NeuralSamples* kept) {
+                           const std::optional<Arrays<2>>& d_rays, const Samples& kept,
+                           const PlacedArrays& placed_arrays) {
     dispatch_real(
         "march_neural_backward", "density", parameters[1], [&](auto real, ArrayArgs& args) {
             using R = decltype(real);
             const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+            const PlacedSamples<R> placed = placed_samples(args, placed_arrays, rays);
             MarchAdjoint<R> adjoint;
             const auto out =
                 MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);
@@ -118,10 +139,10 @@ void march_neural_backward(const NeuralSettings& s, const NeuralArrays& paramete
             with_neural<R>(args, s, parameters, occupancy, settings.field, [&](const auto& field) {
                 typename NeuralField<R>::Sink sink(field, d_table, d_density, d_color);
                 const py::gil_scoped_release release;
-                if (!kept) return march_backward(field, rays, settings.march, out, adjoint, sink);
-                march_backward_by(
-                    [&](std::int64_t chunk) { return kept->of<R>().replay(field, chunk); }, field,
-                    rays, settings.march, out, adjoint, sink);
+                const KeptSamples<R> none;
+                const KeptSamples<R>& found = kept ? (*kept)->of<R>() : none;
+                march_backward_by([&](std::int64_t chunk) { return found.replay(field, chunk); },
+                                  field, rays, settings.march, out, adjoint, sink, placed);
             });
         });
 }
@@ -145,19 +166,20 @@ void bind_neural(py::module_& m) {
     py::class_<NeuralSettings>(m, "NeuralSettings")
         .def(py::init(&neural_settings), py::arg("hash"), py::arg("octaves"), py::arg("density"),
              py::arg("color"));
-    py::class_<NeuralSamples>(m, "NeuralSamples",
-                              "What march_neural keeps of its samples for march_neural_backward.")
+    py::class_<NeuralSamples, std::shared_ptr<NeuralSamples>>(
+        m, "NeuralSamples", "What march_neural keeps of its samples for march_neural_backward.")
         .def(py::init<>());
     m.attr("neural_direction_numbers") = NeuralField<float>::sh_numbers;
     m.def("march_neural", &march_neural, py::arg("settings"), py::arg("parameters"),
-          py::arg("occupancy"), py::arg("march"), py::arg("rays"), py::arg("keep") = nullptr,
+          py::arg("occupancy"), py::arg("march"), py::arg("rays"), py::arg("keep") = py::none(),
+          py::arg("placed") = py::none(),
           "(color, transmittance, depth) of rays through a field of networks. parameters: table, "
           "density network, color network; occupancy (K, K, K) uint8, z y x, or None. "
-          "Samples are written to keep unless None.");
+          "Samples are written to keep unless None; placed: their t and width (R, N), or None.");
     m.def("march_neural_backward", &march_neural_backward, py::arg("settings"),
           py::arg("parameters"), py::arg("occupancy"), py::arg("march"), py::arg("rays"),
           py::arg("outputs"), py::arg("d_outputs"), py::arg("d_parameters"), py::arg("d_rays"),
-          py::arg("kept") = nullptr,
+          py::arg("kept") = py::none(), py::arg("placed") = py::none(),
           "Adds to d_parameters, and to d_rays unless None. kept: of the forward pass, or None.");
     m.def("neural_densities", &neural_densities, py::arg("settings"), py::arg("parameters"),
           py::arg("march"), py::arg("points"), py::arg("sigma_t"),

@@ -1535,10 +1535,11 @@ def march_neural(
     occupancy: numpy.ndarray | None,
     march: MarchSettings,
     rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
-    keep: NeuralSamples = None,
+    keep: NeuralSamples | None = None,
+    placed: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
 ) -> tuple[typing.Any, ...]:
     """
-    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None. Samples are written to keep unless None.
+    (color, transmittance, depth) of rays through a field of networks. parameters: table, density network, color network; occupancy (K, K, K) uint8, z y x, or None. Samples are written to keep unless None; placed: their t and width (R, N), or None.
     """
 
 def march_neural_backward(
@@ -1551,7 +1552,8 @@ def march_neural_backward(
     d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None,
-    kept: NeuralSamples = None,
+    kept: NeuralSamples | None = None,
+    placed: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
 ) -> None:
     """
     Adds to d_parameters, and to d_rays unless None. kept: of the forward pass, or None.

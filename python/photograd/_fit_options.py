@@ -51,6 +51,7 @@ class FitOptions:
         gaussians: at most this many.
         density_control: of Gaussians: "mcmc", "clone_split_prune" or "none".
         decode: of codes: "sample" or "ray".
+        importance: samples of a ray that a nerf places by importance; 0 places all evenly.
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
     """
@@ -73,6 +74,7 @@ class FitOptions:
     gaussians: int = 30_000
     density_control: DensityControlOption = "mcmc"
     decode: Decode = "sample"
+    importance: int = 0
     final_mean_rate: float = 0.01
     ssim_weight: float = 0.2
 
@@ -84,6 +86,7 @@ class FitOptions:
         require_bounds(self, "steps_per_voxel", "sigma_t", above=0)
         require_bounds(self, "total_variation", "prune", low=0)
         require_bounds(self, "seed", low=0, high=2**64 - 1)
+        require_bounds(self, "importance", low=0, high=4096)
         require_bounds(self, "stop", low=0, below=1)
         require_bounds(self, "degree", low=0, high=MAX_DEGREE)
         require_bounds(self, "ssim_weight", low=0, high=1)

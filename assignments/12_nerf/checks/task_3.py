@@ -76,4 +76,8 @@ def the_cdf_of_a_sample_is_its_number(t):
     for ray in range(6):
         before = np.append(0.0, weights[ray]).cumsum()
         part = np.interp(got[ray], edges[ray], before / before[-1])
-        t.close("share of the weight before a sample, times n", 9 * part, u[ray] + np.arange(9))
+        t.close(
+            f"share of the weight before each sample of ray {ray}, times n",
+            9 * part,
+            u[ray] + np.arange(9),
+        )

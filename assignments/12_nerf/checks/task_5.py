@@ -56,7 +56,7 @@ def moved(network, array, change):
 @check(
     "12.5.fog",
     points=3,
-    hint="handout, equations (16) to (18): lengths of steps sum to far - near; mean over rays",
+    hint="handout, equations (16), (17): lengths of steps sum to far - near; mean over rays",
     sole="a case with a closed form, for distances of any kind",
 )
 def the_loss_of_even_fog(t):

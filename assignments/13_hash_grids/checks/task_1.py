@@ -19,24 +19,31 @@ def counting(function, dimensions, asked):
 
 
 def tabulated(t, function, n, offsets, tolerance):
-    """(leaf, values, asked): what `tabulate` says, its leaves valid; asked: all points (N, D)."""
+    """(leaf, values): what `tabulate` says; its leaves and the points it asks for are valid."""
     D, asked = offsets.shape[1], []
     spec = Items(Array(D * (n,), "i8"), Array((None, None)), names=("leaf", "values"))
     field = counting(function, D, asked)
     leaf, values = t.call("tabulate", field, n, offsets, tolerance, returns=spec)
+    points = np.concatenate(asked) if asked else np.zeros((0, D))
+    t.require(
+        bool(((points >= 0) & (points <= 1)).all()),
+        "the field was asked for points outside of 0 to 1",
+        hint="handout, equation (4): offsets are in units of the cell",
+    )
     used = np.unique(leaf)
     t.require(
-        used[0] >= 0 and used[-1] < len(values), f"leaf: {used[-1]}, but {len(values)} leaves"
+        used[0] >= 0 and used[-1] < len(values),
+        f"leaf: numbers from {used[0]} to {used[-1]}, for {len(values)} rows of values",
+        hint="each cell needs the number of its leaf, a row of the values, from 0",
     )
     t.require(len(used) == len(values), f"{len(values)} leaves, of which {len(used)} have cells")
-    points = np.concatenate(asked) if asked else np.zeros((0, D))
     most = len(offsets) * n**D
     t.require(
         len(points) <= most,
         f"the field was asked for {len(points)} points, {most} are enough",
         hint="ask once for each cell and offset, and merge cells from what you have",
     )
-    return leaf, values, points
+    return leaf, values
 
 
 def same_cubes(leaf):
@@ -92,8 +99,7 @@ def cells_hold_means(t):
     for D, n in ((2, 8), (3, 4)):
         offsets = t.rng.uniform(0.0, 1.0, (3, D))
         mix = t.rng.uniform(0.5, 1.5, (D, 2)) * np.array([1.0, 10.0]) ** np.arange(D)[:, None]
-        leaf, values, asked = tabulated(t, lambda x, mix=mix: x**2 @ mix, n, offsets, 0.0)
-        t.require(bool(((asked >= 0) & (asked <= 1)).all()), "points lie outside of 0 to 1")
+        leaf, values = tabulated(t, lambda x, mix=mix: x**2 @ mix, n, offsets, 0.0)
         cell = np.stack(np.indices(D * (n,)), axis=-1)
         square = cell**2 + 2 * cell * offsets.mean(axis=0) + (offsets**2).mean(axis=0)
         t.close(f"values of the cells, D = {D}", values[leaf], square / n**2 @ mix, reveal=True)
@@ -110,10 +116,10 @@ def equal_cells_are_one_leaf(t):
     for D, n in ((2, 16), (3, 8), (2, 1)):
         cells = blocks(t, n, D, 2)
         function, *_ = numbers_of_cells(cells)
-        leaf, values, _ = tabulated(t, function, n, np.full((2, D), 0.5), 0.0)
+        leaf, values = tabulated(t, function, n, np.full((2, D), 0.5), 0.0)
         whole(t, f"cells in the leaf of each cell, D = {D}", same_cubes(leaf), sizes_of(cells, 0.0))
         t.close("values", values[leaf], cells, FAITHFUL)
-    one, values, _ = tabulated(t, lambda x: 0 * x[:, :1] + 3.0, 4, np.full((1, 3), 0.5), 0.0)
+    one, values = tabulated(t, lambda x: 0 * x[:, :1] + 3.0, 4, np.full((1, 3), 0.5), 0.0)
     t.require(len(values) == 1 and not one.any(), "a constant field is one leaf, number 0")
 
 
@@ -130,7 +136,7 @@ def the_tolerance_decides(t):
         # Steps of eighths: a difference may be the tolerance exactly.
         cells = blocks(t, n, D, 2) + t.rng.integers(0, 3, (*D * (n,), 2)) / 8.0
         function, *_ = numbers_of_cells(cells)
-        leaf, values, _ = tabulated(t, function, n, np.full((1, D), 0.5), tolerance)
+        leaf, values = tabulated(t, function, n, np.full((1, D), 0.5), tolerance)
         right = sizes_of(cells, tolerance)
         t.require(len(np.unique(right)) > 2, "the test case is not informative")
         whole(t, f"cells in the leaf of each cell, D = {D}", same_cubes(leaf), right)

@@ -44,7 +44,7 @@ def a_dense_level_is_a_grid(t):
 @check(
     "13.3.blend",
     points=2,
-    hint="handout, equation (9): a weight is the product of f or 1 - f of all axes",
+    hint="handout, equation (9): a weight is the product of w or 1 - w of all axes",
     sole="tests the weights inside of one cell",
 )
 def weights_are_products(t):

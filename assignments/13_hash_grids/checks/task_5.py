@@ -41,6 +41,7 @@ def the_first_step_has_one_length(t):
             f"the step for derivatives of size {size:g}",
             got - table,
             -0.1 * size * d / (np.abs(size * d) + 1e-15),
+            reveal=True,
             hint="handout, equation (13): eps is 1e-15, and is added outside of the root",
         )
 
@@ -67,6 +68,13 @@ def unused_rows_stay(t):
             bool(moved.all()),
             f"{name}: a row with a derivative stays as it was",
             hint="a row counts as used if any of its derivatives is not 0, and then moves whole",
+        )
+    kept = t.call("adapters.kept_by_adam", start[0], d, *start[1:], 7, 0.1, returns=Array((4,)))
+    for name, same in zip(("table", "d_table", "m", "v"), kept, strict=True):
+        t.require(
+            bool(same),
+            f"adam_rows has changed the array {name} that it was given",
+            hint="change a copy: m = m.copy()",
         )
 
 

@@ -131,6 +131,14 @@ DecodeOption: TypeAlias = Annotated[
         help=f"Of {_users('decode')}: {' or '.join(DECODES)}, where the network is evaluated.",
     ),
 ]
+ImportanceOption: TypeAlias = Annotated[
+    int,
+    typer.Option(
+        "--importance",
+        min=0,
+        help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
+    ),
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
@@ -172,6 +180,17 @@ ResumeOption: TypeAlias = Annotated[
 DEFAULTS = FitOptions()
 
 
+def _start(capture: Capture, options: FitOptions, first: Model | None, *, allow_blind: bool) -> Fit:
+    """Begin a fit; its warnings become notes."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        job = Fit.start(capture, options, allow_blind=allow_blind, start_from=first)
+    for warning in caught:
+        note(f"warning: {warning.message}")
+    note(job.start_rule)
+    return job
+
+
 def register(app: typer.Typer) -> None:
     """Add the command."""
     app.command("fit")(fit)
@@ -192,6 +211,7 @@ def fit(
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
     decode: DecodeOption = DEFAULTS.decode,
+    importance: ImportanceOption = DEFAULTS.importance,
     start_from: StartFromOption = None,
     freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
@@ -241,14 +261,10 @@ def fit(
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
+        chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
         first = first_model(start_from) if start_from else None
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
-        for warning in caught:
-            note(f"warning: {warning.message}")
-        note(job.start_rule)
+        job = _start(loaded, options, first, allow_blind=allow_blind)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
     emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")

@@ -10,7 +10,8 @@ import numpy as np
 
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import require_bounds
-from photograd.fields.neural_field import NeuralField, NeuralPolicy
+from photograd.fields.neural_field import NeuralField
+from photograd.fields.neural_policy import NeuralPolicy
 from photograd.network import HashEncoding
 from photograd.representation import ParamSpec, Start, register
 

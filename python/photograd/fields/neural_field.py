@@ -12,7 +12,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -22,19 +22,18 @@ from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
-from photograd._checks import from_plain, require_bounds
+from photograd._checks import from_plain
 from photograd._compiled import _core
 from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, message
 from photograd.fields.march import (
-    Activation,
-    MarchPolicy,
     check_camera_adjoint,
     checked_rays,
     checked_values,
     cotangent_arrays,
     require_finite_image,
 )
+from photograd.fields.neural_policy import NeuralContext, NeuralPolicy, Rays
 from photograd.network import FrequencyEncoding, HashEncoding, Perceptron
 from photograd.network.explosion import require_bounded
 from photograd.representation import Fittable, Memory, Outputs, RayBatch, RenderOptions, Start
@@ -56,47 +55,6 @@ UNSEEN = 1e30
 """The maximum of a cell that was not looked at yet; it is evaluated."""
 OPAQUE = 0.01
 """Opacity of a step that makes a cell occupied, wherever the mean of all cells is above it."""
-
-
-@dataclass(frozen=True)
-class NeuralPolicy(MarchPolicy):
-    """How a field of networks is marched through, and how large its networks are.
-
-    Attributes:
-        width: of the hidden layers.
-        depth: hidden layers of the density network; the color network has one.
-        features: numbers that the color network takes from the density network.
-        hidden: activation of the hidden layers.
-    """
-
-    density_activation: Activation = "exp"
-    width: int = 64
-    depth: int = 1
-    features: int = 15
-    hidden: Activation = "relu"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_bounds(self, "width", "features", low=1, high=1024)
-        require_bounds(self, "depth", low=1, high=32)
-
-
-@dataclass(frozen=True)
-class NeuralContext:
-    """What the backward pass needs: O(1) per ray, and the samples that were kept, if any."""
-
-    parameters: tuple[Array, Array, Array]
-    occupancy: Array | None
-    march: Any
-    rays: tuple[Array, Array, Array, Array]
-    image: tuple[Array, Array, Array]
-    camera_adjoint: bool
-    kept: Any  # _core.NeuralSamples, or None
-
-    @property
-    def sample_count(self) -> int:
-        """Number of samples that were placed on all rays, in empty cells as well."""
-        return int(self.rays[3].sum(dtype=np.int64))
 
 
 class NeuralField(Fittable):
@@ -334,13 +292,21 @@ class NeuralField(Fittable):
         parameters, settings = self._arrays(), self.policy.settings(options.stop)
         rays = checked_rays(batch, settings, options, parameters[1].dtype, seed=seed, step=step)
         cells = self.occupied()
+        rays, placed = self._sampled(rays, cells, batch, options, seed=seed, step=step)
         kept = _core.NeuralSamples() if options.keep_samples else None
-        image = _core.march_neural(self._settings, parameters, cells, settings, rays, kept)
+        image = _core.march_neural(self._settings, parameters, cells, settings, rays, kept, placed)
         color, transmittance, depth = image
         require_finite_image(color, transmittance, batch)
         of_rays = settings, rays, image, options.camera_adjoint
-        context = NeuralContext(parameters, cells, *of_rays, kept)
+        context = NeuralContext(parameters, cells, *of_rays, kept, placed)
         return Outputs(color, 1 - transmittance, depth), context
+
+    def _sampled(
+        self, rays: Rays, cells: Array | None, batch: RayBatch, options: RenderOptions, **at: int
+    ) -> tuple[Rays, tuple[Array, Array] | None]:
+        """Rays, and t and width (R, N) of their samples where these leave the lattice."""
+        del cells, batch, options, at
+        return rays, None
 
     def render_backward(self, context: NeuralContext, d_outputs: Outputs) -> dict[str, Array]:
         """Of each group, and "origins", "directions" (R, 3) if the options asked.
@@ -353,7 +319,8 @@ class NeuralField(Fittable):
         d_parameters = tuple(np.zeros_like(values) for values in c.parameters)
         d_rays = tuple(np.zeros_like(a) for a in c.rays[:2]) if c.camera_adjoint else None
         of_field = (self._settings, c.parameters, c.occupancy, c.march, c.rays)
-        _core.march_neural_backward(*of_field, c.image, cotangents, d_parameters, d_rays, c.kept)
+        d = cotangents, d_parameters, d_rays
+        _core.march_neural_backward(*of_field, c.image, *d, c.kept, c.placed)
         gradients = dict(zip(("table", "density", "color"), d_parameters, strict=True))
         gradients = {name: gradients[name] for name in self.params}
         if d_rays is not None:

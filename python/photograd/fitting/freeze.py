@@ -12,6 +12,7 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
@@ -52,6 +53,20 @@ class Moment:
     bytes: int
     frame_ms: float
     seconds: float
+
+    @classmethod
+    def of_fit(cls, fit: Fit, seconds: float) -> Self:
+        """Score a fit as it is now.
+
+        Args:
+            fit: with held-out views in its capture.
+            seconds: of the fit since the moment before.
+        """
+        behind = None if fit.background is None else learned_background(fit.background)
+        model = Model(fit.model, behind, fit.options, {}, np.zeros((0, 3)))
+        psnr = evaluate(model, fit.capture.test).psnr
+        frame = 1000 * frame_seconds(model, fit.capture)
+        return cls(fit.step_number, psnr, stored_bytes(model), frame, seconds)
 
 
 @dataclass(frozen=True)
@@ -103,7 +118,7 @@ def learn_freeze_refine(
             seconds = run(fit, folder, lambda: fit.step_number >= at).seconds
         if fit.step_number < at:
             return None
-        atomic_write(path, json.dumps(asdict(_scored(fit, seconds))).encode())
+        atomic_write(path, json.dumps(asdict(Moment.of_fit(fit, seconds))).encode())
     elif not path.exists():
         expected, got = f"a fit before step {at}", f"one at step {fit.step_number}"
         remedy = "begin it again in another folder"
@@ -113,7 +128,7 @@ def learn_freeze_refine(
     result = run(fit, folder, lambda: False)
     if fit.step_number < fit.steps:
         return None
-    return Refinement(frozen, _scored(fit, result.seconds))
+    return Refinement(frozen, Moment.of_fit(fit, result.seconds))
 
 
 def _read_moment(path: Path) -> Moment:
@@ -125,11 +140,3 @@ def _read_moment(path: Path) -> Moment:
         remedy = "go on without --freeze, or begin the fit again in another folder"
         expected = f"what --freeze wrote: {', '.join(field.name for field in fields(Moment))}"
         raise IoError(message(name, str(path), expected, f"{failure}", remedy)) from failure
-
-
-def _scored(fit: Fit, seconds: float) -> Moment:
-    behind = None if fit.background is None else learned_background(fit.background)
-    model = Model(fit.model, behind, fit.options, {}, np.zeros((0, 3)))
-    psnr = evaluate(model, fit.capture.test).psnr
-    frame = 1000 * frame_seconds(model, fit.capture)
-    return Moment(fit.step_number, psnr, stored_bytes(model), frame, seconds)

@@ -8,7 +8,8 @@
 
 Each has a `_backward`. `rasterize_backward` holds inside of faces, `antialias_backward` adds the
 silhouettes [Laine2020], and `edge_gradient` gives those without bias [Li2018]. `polygon_coverage`
-is exact. All calculate in float64 and give the same bits on any number of threads.
+is exact; `soft_silhouette` [Liu2019] is biased, and is here to be compared. All calculate in
+float64 and give the same bits on any number of threads.
 """
 
 from __future__ import annotations
@@ -23,9 +24,11 @@ from photograd.raster.edge_sampling import (
     sample_edges,
 )
 from photograd.raster.edges import MeshEdges
+from photograd.raster.footprint import footprints, footprints_backward
 from photograd.raster.lookup import FaceLookup
 from photograd.raster.options import RasterOptions, Stencil
 from photograd.raster.projection import ProjectionGradients, project, project_backward
+from photograd.raster.soft import soft_silhouette, soft_silhouette_backward
 from photograd.raster.visibility import Visibility, rasterize, rasterize_backward
 
 __all__ = [
@@ -42,6 +45,8 @@ __all__ = [
     "edge_gradient",
     "edge_motion_backward",
     "find_crossings",
+    "footprints",
+    "footprints_backward",
     "interpolate",
     "interpolate_backward",
     "polygon_coverage",
@@ -51,4 +56,6 @@ __all__ = [
     "rasterize",
     "rasterize_backward",
     "sample_edges",
+    "soft_silhouette",
+    "soft_silhouette_backward",
 ]

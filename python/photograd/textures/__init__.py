@@ -10,6 +10,7 @@ from photograd.textures.mips import (
     build_mips,
     build_mips_backward,
     mip_level,
+    mip_level_backward,
     sample_mips,
     sample_mips_backward,
 )
@@ -23,6 +24,7 @@ __all__ = [
     "build_mips_backward",
     "loss_and_gradient",
     "mip_level",
+    "mip_level_backward",
     "recover",
     "sample",
     "sample_backward",

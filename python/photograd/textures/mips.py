@@ -16,6 +16,8 @@ from photograd._compiled import _core
 from photograd.textures.sample import TEXTURE
 from photograd.types import Array
 
+LN_2 = 0.6931471805599453
+
 
 def build_mips(texture: Array) -> list[Array]:
     """All levels of a texture (H, W, C), down to a single texel; level 0 is `texture` itself.
@@ -62,6 +64,33 @@ def mip_level(shape: Sequence[int], footprint: Array) -> Array:
     footprint = call.array("footprint", footprint, ("N", 2, 2), finite=False)
     level: Array = _core.mip_level(int(shape[0]), int(shape[1]), footprint)
     return level
+
+
+def mip_level_backward(shape: Sequence[int], footprint: Array, d_level: Array) -> Array:
+    """The adjoint of `mip_level`: with r^2 the square of the longer side, level = log2(r^2) / 2.
+
+    Args:
+        shape, footprint: as for `mip_level`.
+        d_level: (N,) dL/d of what it returned.
+
+    Returns:
+        dL/dfootprint (N, 2, 2), zero for the shorter side, and where the level is 0.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as for `mip_level`.
+    """
+    call = Arguments("mip_level_backward")
+    footprint = call.array("footprint", footprint, ("N", 2, 2))
+    d_level = call.array("d_level", d_level, ("N",))
+    texels = np.array([shape[1], shape[0]], footprint.dtype)
+    square = np.square(footprint * texels).sum(axis=2)
+    longer = square.argmax(axis=1)
+    rows = np.arange(len(footprint))
+    r2 = square[rows, longer]
+    scale = np.where(r2 > 1, d_level / (LN_2 * np.maximum(r2, 1)), 0)
+    d_footprint = np.zeros_like(footprint)
+    d_footprint[rows, longer] = scale[:, None] * footprint[rows, longer] * np.square(texels)
+    return d_footprint
 
 
 def sample_mips(mips: Sequence[Array], uv: Array, level: Array) -> Array:

@@ -37,6 +37,13 @@ def test_compiles(broken: Broken) -> None:
     assert "kit/light.py, line 13: the stripped file does not compile" in broken.says("compiles")[0]
 
 
+def test_imports(broken: Broken) -> None:
+    broken.change("light.py", "def twice", "import itertools\n\n\ndef twice")
+    wanted = "imports itertools, which assignment.toml does not list"
+    assert f"the starter {wanted}" in broken.says("imports")
+    assert f"the solution {wanted}" in broken.says("imports")
+
+
 @pytest.mark.parametrize(
     ("new", "said"),
     [

@@ -29,6 +29,15 @@ struct MarchOptions {
     [[nodiscard]] double tau_stop() const { return stop > 0 ? -std::log(stop) : 1e30; }
 };
 
+/// Samples that do not lie on the lattice: where they are on each ray, and what length each stands
+/// for. Both are held constant: no derivative is taken with respect to them.
+template <Real R>
+struct PlacedSamples {
+    const R* t = nullptr;      // (R, stride), in meters; null for the lattice
+    const R* width = nullptr;  // (R, stride), in meters
+    std::int64_t stride = 0;
+};
+
 /// Rays of a chunk: what the field says, if it does.
 template <class F>
 constexpr std::int64_t chunk_rays() {
@@ -46,9 +55,11 @@ struct SampleBatchState {
     std::vector<std::int64_t> rays;
     SampleBatch<R> batch;
     SampleValues<R> values;
+    std::vector<Lanes<R>> stretch;  // width of each sample over dt; none on the lattice
 
     /// Places samples k0, k0 + 1, ... of each ray.
-    void place(const RayBatch<R>& all, R dt, std::int64_t begin, std::int32_t k0) {
+    void place(const RayBatch<R>& all, const PlacedSamples<R>& placed, R dt, std::int64_t begin,
+               std::int32_t k0) {
         batch.resize(rays.size());
         values.assign_zero(rays.size());
         for (std::size_t g = 0; g < rays.size(); ++g) {
@@ -57,6 +68,14 @@ struct SampleBatchState {
             Lanes<R>& t = batch.t[g];
             for (int i = 0; i < lane_count; ++i)
                 t[i] = all.t0[ray] + (static_cast<R>(k0 + i) + R(0.5)) * dt;
+            if (placed.t) {
+                stretch.resize(rays.size());
+                for (int i = 0; i < lane_count; ++i) {
+                    const auto k = ray * placed.stride + std::min(k0 + i, all.samples[ray] - 1);
+                    t[i] = placed.t[k];
+                    stretch[g][i] = placed.width[k] / dt;
+                }
+            }
             for (int axis = 0; axis < 3; ++axis)
                 for (int i = 0; i < lane_count; ++i)
                     batch.position[axis][g][i] = o[axis] + t[i] * d[axis];
@@ -65,21 +84,27 @@ struct SampleBatchState {
             batch.ray[g] = static_cast<std::uint32_t>(ray - begin);
         }
     }
+    /// Extinction times width is extinction times this times dt; the same for derivatives.
+    void stretch_by_width(std::vector<Lanes<R>>& sigma_t) const {
+        for (std::size_t g = 0; g < std::min(stretch.size(), sigma_t.size()); ++g)
+            for (int i = 0; i < lane_count; ++i) sigma_t[g][i] *= stretch[g][i];
+    }
 };
 
 /// The one loop. lookup(batch, values) writes the field's values of a batch and returns its cache;
 /// pass.on_group(ray, state, g) composites group g and returns the optical depth behind it;
 /// pass.on_batch(state, cache) then gets the whole batch.
 template <Real R, class Lookup, class Pass>
-void walk(Lookup lookup, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
-          std::int64_t end, Pass& pass) {
+void walk(Lookup lookup, const RayBatch<R>& rays, const PlacedSamples<R>& placed,
+          const MarchOptions& options, std::int64_t begin, std::int64_t end, Pass& pass) {
     const R dt = static_cast<R>(options.dt), tau_stop = static_cast<R>(options.tau_stop());
     SampleBatchState<R> state;
     for (std::int64_t ray = begin; ray < end; ++ray)
         if (rays.samples[ray] > 0) state.rays.push_back(ray);
     for (std::int32_t k0 = 0; !state.rays.empty(); k0 += lane_count) {
-        state.place(rays, dt, begin, k0);
+        state.place(rays, placed, dt, begin, k0);
         const auto& cache = lookup(state.batch, state.values);
+        state.stretch_by_width(state.values.sigma_t);
         std::vector<std::int64_t> alive;
         for (std::size_t g = 0; g < state.rays.size(); ++g) {
             for (int i = state.batch.used[g]; i < lane_count; ++i)
@@ -150,6 +175,7 @@ struct BackwardPass {
         const bool camera = adjoint.d_origins != nullptr;
         auto* d_p = camera ? d_position : nullptr;
         auto* d_d = camera ? d_direction : nullptr;
+        state.stretch_by_width(d_values.sigma_t);
         field.backward(state.batch, cache, d_values, sink, chunk, d_p, d_d);
         if (!camera) return;
         // p = o + t d with t fixed:  d_o = sum d_p,  d_d = sum t d_p.
@@ -166,7 +192,7 @@ struct BackwardPass {
 
 }  // namespace detail
 
-/// Evaluates each batch, in one cache. Another form is in field/kept_samples.h.
+/// Evaluates each batch, in one cache. Another form is in render/march/kept_samples.h.
 template <class F>
 struct Evaluation {
     const F& field;
@@ -182,13 +208,13 @@ struct Evaluation {
 /// lookup_of(chunk) looks up the batches of a chunk of rays, see detail::walk.
 template <class F, Real R, class LookupOf>
 void march_by(const LookupOf& lookup_of, const RayBatch<R>& rays, const MarchOptions& options,
-              const MarchOutputs<R>& out) {
+              const MarchOutputs<R>& out, const PlacedSamples<R>& placed = {}) {
     for_chunks(
         0, rays.count,
         [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
             detail::ForwardPass<R> pass{options.quadrature, static_cast<R>(options.dt), begin, {}};
             pass.totals.resize(static_cast<std::size_t>(end - begin));
-            detail::walk(lookup_of(chunk), rays, options, begin, end, pass);
+            detail::walk(lookup_of(chunk), rays, placed, options, begin, end, pass);
             for (std::int64_t ray = begin; ray < end; ++ray)
                 write_outputs(pass.totals[static_cast<std::size_t>(ray - begin)], ray, out);
         },
@@ -205,7 +231,8 @@ void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
 template <Real R, class F, class LookupOf>
 void march_backward_by(const LookupOf& lookup_of, const F& field, const RayBatch<R>& rays,
                        const MarchOptions& options, const MarchOutputs<R>& out,
-                       const MarchAdjoint<R>& adjoint, typename F::Sink& sink) {
+                       const MarchAdjoint<R>& adjoint, typename F::Sink& sink,
+                       const PlacedSamples<R>& placed = {}) {
     for_slabs(rays.samples, rays.count, [&](std::int64_t first, std::int64_t last) {
         sink.begin(static_cast<int>(chunk_count(last - first, chunk_rays<F>())));
         for_chunks(
@@ -221,7 +248,7 @@ void march_backward_by(const LookupOf& lookup_of, const F& field, const RayBatch
                                                 {}};
                 for (std::int64_t ray = begin; ray < end; ++ray)
                     pass.cotangents.push_back(start_cotangents(out, adjoint, ray));
-                detail::walk(lookup_of(chunk), rays, options, begin, end, pass);
+                detail::walk(lookup_of(chunk), rays, placed, options, begin, end, pass);
             },
             chunk_rays<F>());
         sink.finish();

@@ -93,8 +93,8 @@ def readme(manifest: Manifest, handout: str) -> str:
 > task's points.
 >
 > **Every function** leaves its arguments as they are, reads arrays of any memory layout (read-only
-> ones and views too), and gives equal answers to equal calls, for one row as for many. Hidden
-> checks ask for it.
+> ones and views too), and gives equal answers to equal calls, for one row as for many but
+> for rounding. Hidden checks ask for it.
 """
     return f"{title}\n{work}{rest}"
 

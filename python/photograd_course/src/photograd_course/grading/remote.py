@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from ..worker.codec import Frame
 from ..worker.process import WorkerDied, WorkerLied, WorkerStarved, WorkerTimeout, contains_function
+from ..worker.screen import OF_ANNOTATIONS
 from .failures import MachineTooBusy, StudentFailure
 from .local import not_implemented
 from .trial import Breach
@@ -173,6 +174,6 @@ def _forbidden(problems: Any, allowed: Sequence[str]) -> StudentFailure:
         if isinstance(problem, dict):
             file, line = str(problem.get("file"))[:80], problem.get("line")
             lines.append(f"{file}, line {line}: imports {str(problem.get('module'))[:60]}")
-    permitted = ", ".join(allowed)
+    permitted = ", ".join(sorted({*allowed, *OF_ANNOTATIONS}))
     text = f"{'; '.join(lines[:5])}. A graded module may import {permitted} only: remove the import"
     return StudentFailure("forbidden", text)

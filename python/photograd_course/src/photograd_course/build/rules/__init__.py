@@ -20,6 +20,7 @@ from . import (
     faces,
     figures,
     hints,
+    imports,
     leaked_names,
     leaked_shingles,
     likeness,
@@ -38,6 +39,7 @@ Rule = Callable[[AssignmentBuild], Iterator[str]]
 READING: dict[str, Rule] = {
     "markers": markers.check_markers,
     "compiles": compiles.check_compiles,
+    "imports": imports.check_imports,
     "faces": faces.check_faces,
     "points": points.check_points,
     "prerequisites": prerequisites.check_prerequisites,

@@ -31,8 +31,9 @@ public:
     };
     using Chunk = std::vector<Batch>;  // its first batches
 
-    /// Forgets everything, and makes room for the samples of `rays`. Only if they are one slab
-    /// (chunks.h), both passes cut them into the same chunks; of more, nothing is kept.
+    /// Forgets everything, and makes room for the samples of `rays`: before it, nothing is kept.
+    /// Only if they are one slab (chunks.h), both passes cut them into the same chunks; of more
+    /// rays, nothing is kept.
     void start(const Field& field, const RayBatch<R>& rays) {
         chunks_.clear();
         density_ = field.density.shape();
@@ -53,7 +54,7 @@ public:
         const Cache& operator()(const SampleBatch<R>& batch, SampleValues<R>& values) {
             field.eval(batch, cache, values);
             const std::size_t size = cache.used * field.block_bytes();
-            if (size > room) {
+            if (!chunk || size > room) {
                 room = 0;
                 return cache;
             }
