@@ -325,9 +325,10 @@ class MeshSurface(Fittable):
     def memory(cls, box: Array, options: FitOptions, available: int) -> Sequence[Memory]:
         """Of the vertices and the faces of a sphere."""
         del box
-        size = (COPIES * 4 * 6 * 10 + 12 * 20) * options.resolution**2
+        size = (COPIES * 4 * 6 * 10 + 12 * 20) * options.resolution * options.resolution
         fits = int(options.resolution * float(np.sqrt(min(1.0, available / (2 * size)))))
-        what = f"a sphere of {20 * options.resolution**2:,} triangles"
+        triangles = 20 * options.resolution * options.resolution
+        what = f"a sphere of {triangles:,} triangles"
         return (Memory("resolution", what, size, f"--resolution {fits} takes half of it"),)
 
     def state(self) -> dict[str, Array]:
