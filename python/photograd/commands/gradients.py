@@ -71,6 +71,7 @@ def gradients(
     """Draw the gradient of the loss in every voxel or leaf, from the start of the fit to its end.
 
     Of Gaussians: where their means are pulled, which should be denser, and which will be split.
+    Of a mesh: where its vertices are pulled, by silhouettes and inside of faces.
 
     Example: photograd gradients model photos --out pictures
     """
@@ -248,9 +249,28 @@ def draw_gaussians(
     return {"steps": list(chosen), **save_pictures(model, pictures, out)}
 
 
+def draw_surface(
+    model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
+) -> dict[str, Any]:
+    """The picture of a fit of a mesh at three of its steps, and its curves."""
+    from photograd.fitting.surface_gradients import draw_surface_gradients, surface_gradients
+
+    del rays, seed  # a whole view, and nothing random
+    view = TrainingViews(capture.train).views[0]
+    weight = model.options.ssim_weight
+    rows = {
+        step: surface_gradients(field, view, ssim_weight=weight)
+        for step, field in few_snapshots(model, folder).items()
+    }
+    title = "What the loss asks of each vertex"
+    pictures = {"surface_gradients": draw_surface_gradients(rows, title=title)}
+    return {"steps": list(rows), **save_pictures(model, pictures, out)}
+
+
 DRAWERS = {
     "voxels": draw_voxels,
     "gaussians": draw_gaussians,
+    "surface": draw_surface,
     "networks": draw_networks,
     "groups": draw_groups,
 }

@@ -98,6 +98,7 @@ class MeshSurface(Fittable):
     same_resolution: ClassVar[bool] = False
     first_model_help: ClassVar[str] = "or without one, from a sphere"
     row_updates: ClassVar[bool] = False
+    gradient_picture: ClassVar[str] = "surface"
     counts: ClassVar[str] = "sphere"
     fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 16, "steps": 1000}
     export_suffixes: ClassVar[tuple[str, ...]] = (".glb", ".npz")
@@ -249,16 +250,7 @@ class MeshSurface(Fittable):
 
     def render_backward(self, context: SurfaceContext, d_outputs: Outputs) -> dict[str, Array]:
         """dL/d params, and "camera_from_world" (3, 4) if the options asked."""
-        height, width, _ = context.picture.image.shape
-        given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
-        parts = [
-            np.zeros((height, width, channels))
-            if d is None
-            else np.asarray(d, np.float64).reshape(height, width, channels)
-            for d, channels in given
-        ]
-        d_image = np.concatenate(parts, axis=-1)
-        found = context.picture.backward(d_image)
+        found = context.picture.backward(context.picture.cotangent(d_outputs))
         colors = context.picture.colors
         gradients: dict[str, Array] = {
             "differential": self._steps.solve(found.vertices),

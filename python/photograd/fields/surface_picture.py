@@ -28,7 +28,7 @@ from photograd.raster import (
     rasterize,
     rasterize_backward,
 )
-from photograd.representation import ImageBatch
+from photograd.representation import ImageBatch, Outputs
 from photograd.types import Array, FloatArray
 
 
@@ -39,6 +39,15 @@ class SurfaceGradients:
     vertices: FloatArray  # (V, 3)
     colors: FloatArray  # (V, 3)
     camera_from_world: FloatArray  # (3, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class PositionGradients:
+    """dL/d of positions in homogeneous pixels by their two parts, and of the colors; float64."""
+
+    silhouettes: FloatArray  # (V, 3)
+    interior: FloatArray  # (V, 3)
+    colors: FloatArray  # (V, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,14 +117,30 @@ class SurfacePicture:
         drawn = camera, pose, local, positions, visibility, crossings, shaded
         return cls(image, vertices, colors, faces, edges, *drawn)
 
-    def backward(self, d_image: FloatArray) -> SurfaceGradients:
-        """The adjoint.
+    def cotangent(self, d_outputs: Outputs) -> FloatArray:
+        """dL/d `image`.
+
+        Args:
+            d_outputs: dL/d color (P, 3), opacity (P,) and depth (P,) of the pixels; None for zero.
+        """
+        height, width, _ = self.image.shape
+        given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
+        parts = [
+            np.zeros((height, width, channels))
+            if d is None
+            else np.asarray(d, np.float64).reshape(height, width, channels)
+            for d, channels in given
+        ]
+        return np.concatenate(parts, axis=-1)
+
+    def position_gradients(self, d_image: FloatArray) -> PositionGradients:
+        """The parts of the adjoint.
 
         Args:
             d_image: (H, W, 5) dL/d of `image`.
         """
         positions, visibility = self.positions, self.visibility
-        d_shaded, d_edges = antialias_backward(
+        d_shaded, silhouettes = antialias_backward(
             self.shaded, self.crossings, d_image, positions, self.edges
         )
         d_color = np.ascontiguousarray(d_shaded[..., :3])
@@ -123,8 +148,18 @@ class SurfacePicture:
             self.colors, self.faces, visibility, d_color
         )
         d_depth = np.where(visibility.covered, d_shaded[..., 4], 0.0)
-        d_inside = rasterize_backward(positions, self.faces, visibility, d_barycentrics, d_depth)
-        d_local = project_backward(self.local, self.camera, d_edges + d_inside).vertices
+        interior = rasterize_backward(positions, self.faces, visibility, d_barycentrics, d_depth)
+        return PositionGradients(silhouettes, interior, d_colors)
+
+    def backward(self, d_image: FloatArray) -> SurfaceGradients:
+        """The adjoint.
+
+        Args:
+            d_image: (H, W, 5) dL/d of `image`.
+        """
+        parts = self.position_gradients(d_image)
+        d_positions = parts.silhouettes + parts.interior
+        d_local = project_backward(self.local, self.camera, d_positions).vertices
         d_turn = np.einsum("vi,vj->ij", d_local, self.vertices)
         d_pose = np.concatenate([d_turn, d_local.sum(axis=0)[:, None]], axis=1)
-        return SurfaceGradients(matmul(d_local, self.pose[:, :3]), d_colors, d_pose)
+        return SurfaceGradients(matmul(d_local, self.pose[:, :3]), parts.colors, d_pose)

@@ -111,7 +111,7 @@ class Fittable(Representation):
     row_updates: ClassVar[bool] = True
     """Whether Adam leaves rows without a gradient alone."""
     gradient_picture: ClassVar[str] = "groups"
-    """A key of `photograd.fitting.gradient_pictures.DRAWERS`."""
+    """A key of `photograd.commands.gradients.DRAWERS`."""
     export_suffixes: ClassVar[tuple[str, ...]] = (".npz",)
     """Of files that `export` writes."""
     exported_as: ClassVar[str] = ""
