@@ -69,6 +69,7 @@ EXCEPTIONS: Mapping[tuple[str, str], str] = {
     ("photograd/fitting/gradient_drawings.py", "place_axes"): "verb",
     ("photograd/fitting/group_gradients.py", "place_axes"): "verb",
     ("photograd/fitting/network_gradients.py", "place_axes"): "verb",
+    ("photograd/fitting/surface_gradients.py", "place_axes"): "verb",
     ("photograd/fitting/quality_plot.py", "place_axes"): "verb",
     ("photograd/transport/inverse/pictures.py", "place_axes"): "verb",
     ("photograd/transport/builtin.py", "GLOW_RADIANCE"): "the sky around the sun",
