@@ -37,7 +37,7 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
     assert Candidate("sparse_sh", 128).options(FitOptions()).resolution == 128
     shown = photograd("fit", "--help").out
     text = " ".join(shown.replace("│", " ").split())
-    assert "128; hash_grid: 512, nerf: 64, sparse_sh: 256" in text
+    assert "128; hash_grid: 512, mesh: 16, nerf: 64, sparse_sh: 256" in text
 
 
 @pytest.mark.parametrize(
