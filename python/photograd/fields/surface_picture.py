@@ -123,7 +123,7 @@ class SurfacePicture:
         Args:
             d_outputs: dL/d color (P, 3), opacity (P,) and depth (P,) of the pixels; None for zero.
         """
-        height, width, _ = self.image.shape
+        height, width = self.image.shape[:2]
         given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
         parts = [
             np.zeros((height, width, channels))
