@@ -154,7 +154,7 @@ def test_the_gradient_is_that_of_samples_held_where_they_are(
         field.params = dict(groups)
         with monkeypatch.context() as patch:
             if hold:
-                patch.setattr(field, "_place", lambda *_, **__: held)
+                patch.setattr(field, "_sampled", lambda *_, **__: held)
             return field.render(batch, seed=1, step=2, options=OPTIONS)
 
     def function(groups: Any) -> Any:

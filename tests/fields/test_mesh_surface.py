@@ -12,7 +12,7 @@ import pytest
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError
 from photograd.fields import MeshSurface
 from photograd.geometry.icosphere import icosphere
-from photograd.transport.mesh_files import read_model
+from photograd.transport.mesh_files import read_mesh_surface, read_model
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -41,8 +41,13 @@ def test_it_is_written_for_other_programs(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # colors of vertices are not read
         shapes: Any = read_model(tmp_path / "mesh.glb").shapes
+        again = read_mesh_surface(tmp_path / "mesh.glb")
     corners = shapes[0].vertices[shapes[0].faces]
     np.testing.assert_allclose(corners, field.vertices[field.faces], atol=1e-6)
+    assert again.shape == field.shape
+    np.testing.assert_allclose(
+        np.sort(again.vertices[:, 0]), np.sort(field.vertices[:, 0]), atol=1e-5
+    )
     field.export(tmp_path / "mesh.npz", None)
     with np.load(tmp_path / "mesh.npz") as arrays:
         assert {"vertices", "colors", "faces", "box"} == set(arrays.files)

@@ -91,7 +91,7 @@ def test_it_has_to_be_cut_from_voxels(grid: Model, capture: Capture) -> None:
         Fit.start(capture, scene.options(**LEAVES), start_from=model_of(leaves))
     with pytest.raises(
         RangeError,
-        match="none, or 'gaussian_codes' or 'gaussians' or 'leaf_codes' or 'leaf_mlps' or 'oct",
+        match="none, or 'gaussian_codes' or 'gaussians' or 'leaf_codes' or 'leaf_mlps' or 'mesh'",
     ):
         Fit.start(capture, scene.options(**GRID), start_from=grid)
 

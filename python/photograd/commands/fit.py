@@ -35,7 +35,7 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.errors import RangeError, message
-from photograd.fields import fittable
+from photograd.fields import MeshSurface, TexturedMesh, fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.freeze import learn_freeze_refine
@@ -49,7 +49,7 @@ from photograd.fitting.options import (
     users_of,
 )
 from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
-from photograd.transport.mesh_files import read_textured_mesh
+from photograd.transport.mesh_files import read_mesh_surface, read_textured_mesh
 
 
 def _defaults(option: str) -> str:
@@ -263,7 +263,7 @@ def fit(
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
         chosen |= {"importance": importance}
         options = options_for(representation, **chosen)
-        first = first_model(start_from) if start_from else None
+        first = first_model(start_from, representation) if start_from else None
         job = _start(loaded, options, first, allow_blind=allow_blind)
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
@@ -298,17 +298,18 @@ def run_and_score(
     return results[-1], {} if found is None else asdict(found)
 
 
-def first_model(path: Path) -> Model:
-    """What a fit starts from: a model, or a mesh without a texture yet.
+def first_model(path: Path, representation: str = TexturedMesh.name) -> Model:
+    """What a fit starts from: a model, or a mesh without colors yet.
 
-    What a mesh file holds that is not supported is said on stderr. Raises what `load_model` or
-    `read_textured_mesh` raises.
+    What a mesh file holds that is not supported is said on stderr. Raises what `load_model`,
+    `read_mesh_surface` or `read_textured_mesh` raises.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
         return load_model(path)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        field = read_textured_mesh(path)
+        read = read_mesh_surface if representation == MeshSurface.name else read_textured_mesh
+        field = read(path)
     for warning in caught:
         note(f"{warning.message}")
     return Model.of(field)

@@ -159,7 +159,8 @@ def render_codes(
         view,
         options.camera_adjoint,
     )
-    return Outputs(color, opacity, pictures[0].depth.ravel()), context
+    outputs = Outputs(color, opacity, pictures[0].depth.ravel())
+    return outputs.checked("GaussianCodes.render", batch), context
 
 
 def render_codes_backward(context: CodedSplatsContext, d_outputs: Outputs) -> dict[str, Array]:

@@ -240,12 +240,16 @@ class MeshSurface(Fittable):
     def render(
         self, batch: ImageBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, SurfaceContext]:
-        """Color (P, 3), opacity (P,) and depth (P,) of all pixels, row by row."""
+        """Color (P, 3), opacity (P,) and depth (P,) of all pixels, row by row.
+
+        Raises Error if one is not finite.
+        """
         del seed, step  # nothing random here
         picture = SurfacePicture.of(self.vertices, self.colors(), self.faces, self._edges, batch)
         rows = picture.image.reshape(-1, 5).astype(self.params["color_logits"].dtype)
         color, opacity, depth = rows[:, :3], rows[:, 3], rows[:, 4]
         outputs = Outputs(*(np.ascontiguousarray(part) for part in (color, opacity, depth)))
+        outputs = outputs.checked("MeshSurface.render", batch)
         return outputs, SurfaceContext(picture, options.camera_adjoint)
 
     def render_backward(self, context: SurfaceContext, d_outputs: Outputs) -> dict[str, Array]:
@@ -281,7 +285,7 @@ class MeshSurface(Fittable):
                 first.vertices, first.faces, logits, smoothness=first.policy.smoothness
             )
         elif isinstance(first, TexturedMesh):
-            field = cls.of_mesh(*_without_seams(first.mesh))
+            field = cls.of_mesh(*without_seams(first.mesh))
         else:
             expected = f"a model of {' or '.join(cls.first_model_kinds)}"
             raise RangeError(
@@ -386,7 +390,7 @@ def _manifold_edges(faces: Array) -> MeshEdges:
     return edges
 
 
-def _without_seams(mesh: Mesh) -> tuple[Array, Array]:
-    """Vertices and faces, the vertices at one position merged into one."""
+def without_seams(mesh: Mesh) -> tuple[Array, Array]:
+    """Vertices (V, 3) and faces (F, 3) of `mesh`, the vertices at one position merged into one."""
     vertices, which = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
     return vertices, which.reshape(-1)[mesh.faces]

@@ -91,15 +91,21 @@ class Outputs:
     opacity: Array | None = None
     depth: Array | None = None
 
-    def checked(self, function: str, batch: RayBatch | CanvasBatch) -> Outputs:
+    def checked(self, function: str, batch: RayBatch | CanvasBatch | ImageBatch) -> Outputs:
         """These outputs, as `function` returns them for `batch`.
 
         Raises Error, naming the first pixel or point, if one is not finite.
         """
-        pixel = batch.pixel if isinstance(batch, RayBatch) else None
-        require_finite(
-            function,
-            vars(self),
-            lambda at: f"point {at[0]}" if pixel is None else f"pixel {int(pixel[at[0]])}",
-        )
+
+        def name_of(at: tuple[int, ...]) -> str:
+            if isinstance(batch, ImageBatch):
+                row, column = divmod(at[0], batch.camera.width)
+                return f"pixel ({column}, {row})"
+            return (
+                f"pixel {int(batch.pixel[at[0]])}"
+                if isinstance(batch, RayBatch)
+                else f"point {at[0]}"
+            )
+
+        require_finite(function, vars(self), name_of)
         return self

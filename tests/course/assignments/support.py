@@ -19,7 +19,7 @@ import tempfile
 from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -164,6 +164,8 @@ class AssignmentTests:
     """
 
     folder: Path
+    long_figures: ClassVar[frozenset[str]] = frozenset()
+    """Those that train for a minute: their pictures are drawn anew with the modes alone."""
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         wanted = metafunc.fixturenames
@@ -172,7 +174,12 @@ class AssignmentTests:
         if "alternative" in wanted:
             metafunc.parametrize("alternative", names(self.folder, "alternatives"))
         if "figure" in wanted:
-            metafunc.parametrize("figure", list(load_figures(self.folder).FIGURES))
+            long = pytest.mark.exhaustive
+            names_of_figures = [
+                pytest.param(name, marks=(long,) if name in self.long_figures else ())
+                for name in load_figures(self.folder).FIGURES
+            ]
+            metafunc.parametrize("figure", names_of_figures)
 
     @property
     def bundle(self) -> Bundle:

@@ -35,6 +35,7 @@ PRINTED = 6e-7  # the handout rounds to six decimals
 
 class TestNerf(AssignmentTests):
     folder = FOLDER
+    long_figures = frozenset({"fig1_view", "fig2_encoding"})
 
 
 @pytest.fixture(scope="module")

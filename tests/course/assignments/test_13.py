@@ -20,6 +20,7 @@ PRINTED = 6e-7  # the handout rounds to six decimals
 
 class TestHashGrids(AssignmentTests):
     folder = FOLDER
+    long_figures = frozenset({"fig6_size"})
 
 
 @pytest.fixture(scope="module")

@@ -1,13 +1,15 @@
-"""Meshes of a file as one textured mesh, for a fit to start from."""
+"""Meshes of a file as one, for a fit to start from."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from photograd.errors import RangeError, SceneError, message
+from photograd.fields.mesh_surface import MeshSurface, without_seams
 from photograd.fields.textured_mesh import TexturedMesh
 from photograd.geometry.mesh import Mesh
 from photograd.transport.mesh_files.read import read_model
@@ -32,9 +34,7 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
         RangeError: texture coordinates outside of [0, 1].
     """
     parts: list[tuple[Array, Array, Array]] = []
-    for shape in read_model(path).shapes:
-        if not isinstance(shape, MeshShape):
-            continue
+    for shape, moved in _instances(path):
         if shape.uv is None:
             expected, got = "texture coordinates of every shape", f"none of '{shape.name}'"
             remedy = "unwrap the mesh in a modeler"
@@ -43,9 +43,7 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
             expected, got = "texture coordinates in [0, 1]", f"others of '{shape.name}'"
             remedy = "unwrap the mesh, so that no texture repeats"
             raise RangeError(message("read_textured_mesh", f"{path}", expected, got, remedy))
-        for instance in shape.instances or (np.eye(4),):
-            moved = shape.vertices @ instance[:3, :3].T + instance[:3, 3]
-            parts.append((moved.astype(np.float32), shape.faces, shape.uv))
+        parts.append((moved, shape.faces, shape.uv))
     side = math.ceil(math.sqrt(len(parts)))
     margin = MARGIN if side > 1 else 0.0
     vertices, faces, uv, count = [], [], [], 0
@@ -59,3 +57,38 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
         np.concatenate(vertices), np.concatenate(faces), np.concatenate(uv).astype(np.float32)
     )
     return TexturedMesh.of_mesh(mesh)
+
+
+def read_mesh_surface(path: str | Path) -> MeshSurface:
+    """The shapes of a mesh file as one mesh of gray vertices; `read_model` says which files.
+
+    Vertices at one position, as at a seam of texture coordinates, become one.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        IoError, RangeError, SceneError: what `read_model` raises.
+        SceneError: no mesh, a triangle without area, or an edge of three faces or more.
+    """
+    vertices: list[Array] = []
+    faces: list[Array] = []
+    count = 0
+    for shape, moved in _instances(path):
+        vertices.append(moved)
+        faces.append(shape.faces.astype(np.int64) + count)
+        count += len(moved)
+    if not vertices:
+        raise SceneError(message("read_mesh_surface", f"{path}", "a mesh", "none"))
+    mesh = Mesh(np.concatenate(vertices), np.concatenate(faces))
+    return MeshSurface.of_mesh(*without_seams(mesh))
+
+
+def _instances(path: str | Path) -> Iterator[tuple[MeshShape, Array]]:
+    """Each mesh of a file, with its vertices (V, 3) in the world, once an instance."""
+    for shape in read_model(path).shapes:
+        if not isinstance(shape, MeshShape):
+            continue
+        for instance in shape.instances or (np.eye(4),):
+            moved = shape.vertices @ instance[:3, :3].T + instance[:3, 3]
+            yield shape, moved.astype(np.float32)
