@@ -19,7 +19,7 @@ import tempfile
 from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
@@ -164,8 +164,7 @@ class AssignmentTests:
     """
 
     folder: Path
-    long_figures: ClassVar[frozenset[str]] = frozenset()
-    """Those that train for a minute: their pictures are drawn anew with the modes alone."""
+    long_figures: frozenset[str] = frozenset()  # that train for a minute
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         wanted = metafunc.fixturenames
@@ -174,12 +173,9 @@ class AssignmentTests:
         if "alternative" in wanted:
             metafunc.parametrize("alternative", names(self.folder, "alternatives"))
         if "figure" in wanted:
-            long = pytest.mark.exhaustive
-            names_of_figures = [
-                pytest.param(name, marks=(long,) if name in self.long_figures else ())
-                for name in load_figures(self.folder).FIGURES
-            ]
-            metafunc.parametrize("figure", names_of_figures)
+            marks = dict.fromkeys(self.long_figures, pytest.mark.exhaustive)
+            drawn = load_figures(self.folder).FIGURES
+            metafunc.parametrize("figure", [pytest.param(k, marks=marks.get(k, ())) for k in drawn])
 
     @property
     def bundle(self) -> Bundle:
@@ -241,8 +237,7 @@ class AssignmentTests:
         assert len(names(self.folder, "alternatives")) >= 3
 
     def test_a_figure_says_what_its_picture_shows(self, figure: str) -> None:
-        facts = figure_facts(self.folder, figure)
-        assert facts
+        assert (facts := figure_facts(self.folder, figure))
         assert red(facts) == {}
 
     def test_a_figure_turns_red_under_its_mutant(self, figure: str) -> None:
@@ -283,11 +278,10 @@ class AssignmentTests:
 
     def test_papers_are_cited_by_a_key_of_the_bibliography(self) -> None:
         text = (self.folder / "handout.md").read_text("utf-8")
-        keys = set(re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text))
         bibliography = (ROOT / "cpp" / "references.bib").read_text("utf-8")
         known = set(re.findall(r"^@\w+\{([^,\s]+),", bibliography, re.MULTILINE))
-        assert keys
-        assert keys <= known
+        keys = set(re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text))
+        assert set() < keys <= known
 
 
 def assert_everything(outcomes: list[Outcome]) -> None:
