@@ -166,7 +166,7 @@ ensure_core() {
     [ "${1:-}" = with-dependencies ] || options+=(--no-deps)
     key="$(core_options) $(hash_of CMakeLists.txt cpp pyproject.toml)"
     is_fresh core "$key" && return
-    say "core: compiling (first time six minutes of processor time, then only what changed)"
+    say "core: compiling (first time nine minutes of processor time, then only what changed)"
     logged core .venv/bin/python -m pip install "${options[@]}" -e python/photograd_course
     PHOTOGRAD_RELEASE=1 SKBUILD_CMAKE_DEFINE=$(core_options) \
         logged core .venv/bin/python -m pip install "${options[@]}" -e .
