@@ -144,8 +144,9 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
         uses[p.name] = TextureUse(name, 0 if encoding == "alpha" else channel)
         if name not in textures:
             texels = texels_of(draw, encoding, height, width)
-            masks = encoding == "alpha" and material.alpha_cutoff is not None
-            textures[name] = Texture(texels, wrap, "bilinear" if masks else looked_up)
+            # One sampler serves color and mask, and masks have no mip maps.
+            masked = material.alpha_cutoff is not None and p.name in ("alpha", "base_color")
+            textures[name] = Texture(texels, wrap, "bilinear" if masked else looked_up)
     material = with_whole_images(material, uses)
     if "alpha" in uses and "base_color" not in uses:
         del uses["alpha"]
