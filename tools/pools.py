@@ -5,7 +5,8 @@ Usage: pools.py [PATH ...] [options of pytest]
 The folders of WAITING make the second pool: their tests wait for limits of time and use little of
 the processor, so more of them run at once. The first pool has a lower priority, since limits of
 time are tight in the second one only. Output of the second pool follows that of the first; then
-come the dearest tests of both and one line that counts all. Options go to both pools.
+come the dearest tests of both and one line that counts all; build/log/test_costs.json holds the
+costs of all tests. Options go to both pools.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ NO_BYTECODE = "PYTHONDONTWRITEBYTECODE"
 PACKAGES = [str(ROOT / "python/photograd"), str(ROOT / "python/photograd_course/src")]
 NO_TESTS = 5  # pytest's exit status
 SHOWN = 20
+ALL_COSTS = ROOT / "build" / "log" / "test_costs.json"
 COUNTED = ("failed", "passed", "skipped", "xfailed", "xpassed", "errors")
 
 
@@ -141,6 +143,8 @@ def main(words: Sequence[str]) -> int:
     for each in read:
         counts.update(each["counts"])
         tests |= each["tests"]
+    ALL_COSTS.parent.mkdir(parents=True, exist_ok=True)
+    ALL_COSTS.write_text(json.dumps(tests, indent=1, sort_keys=True), encoding="utf-8")
     print("", *dearest(tests), "", last_line(counts, time.monotonic() - started), sep="\n")
     return status_of(found)
 
