@@ -19,6 +19,7 @@ from photograd.commands import (
     info,
     recover,
     render,
+    simplify,
     trace,
 )
 
@@ -31,6 +32,7 @@ def register(app: typer.Typer) -> None:
         render,
         trace,
         bake_ao,
+        simplify,
         recover,
         convert,
         evaluate,

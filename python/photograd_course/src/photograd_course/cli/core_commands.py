@@ -16,6 +16,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("render", "Render a recovered scene, for example as a turntable."),
     ("trace", "Path trace a described scene."),
     ("bake-ao", "Bake how much of the sky each texel of a mesh sees."),
+    ("simplify", "Make a mesh of few triangles look like the mesh it comes from."),
     ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
     ("convert", "Convert a file of Gaussians to another format."),
     ("evaluate", "Compare a recovered scene with held-out photographs."),
