@@ -20,6 +20,7 @@ bool is_culled(Cull cull, bool front) { return cull == (front ? Cull::front : Cu
 bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out,
               std::size_t pixel) {
     if (!(z >= rules.near && z <= rules.far)) return false;
+    if (out.behind && !(z > out.behind[pixel])) return false;
     if (out.overdraw) ++out.overdraw[pixel];
     const StencilRules& stencil = rules.stencil;
     if (out.stencil && !stencil.allows(out.stencil[pixel])) {
@@ -40,7 +41,7 @@ void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const Fr
             const double z = triangle.depth_at(x + 0.5, y + 0.5);
             const std::size_t pixel = row + static_cast<std::size_t>(x);
             if (z < 0 || !survives(rules, z, out, pixel)) continue;
-            out.face[pixel] = number;
+            if (out.face) out.face[pixel] = number;
             if (rules.depth_write) out.depth[pixel] = z;
         }
     }
@@ -79,7 +80,7 @@ void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const Visibil
                 draw_triangle(triangle, out.first_face + static_cast<std::int32_t>(face), rules,
                               tile, mesh.width, out);
         }
-        fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
+        if (out.face) fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
     });
 }
 

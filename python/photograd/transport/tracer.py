@@ -54,6 +54,8 @@ class PathTracer:
             where a light has become much stronger. Places and directions of lights are fixed;
             "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
         incomplete: {name: what is missing} of those params whose derivative is not handed out.
+        core_shapes: the scene's shapes and its lights with a surface, in the core's order.
+        core_owner: (S,) which of them each shape of the core is; a mesh has one for each instance.
 
     Example:
         >>> room = photograd.PathTracer(photograd.builtin_scene("cornell-box", 8))
@@ -94,16 +96,16 @@ class PathTracer:
             *((name, s, len(names)) for name, s in light_shapes(scene).items()),
         ]
         placed.sort(key=lambda entry: ORDER.index(type(entry[1])))
-        self._shapes: list[Shape] = [shape for _, shape, _ in placed]
+        self.core_shapes: list[Shape] = [shape for _, shape, _ in placed]
         self._emissions = [name for name, _, _ in placed]
-        meshes = [shape for shape in self._shapes if isinstance(shape, MeshShape)]
-        spheres = [shape for shape in self._shapes if isinstance(shape, SphereShape)]
-        sdfs = [shape.ready.parts for shape in self._shapes if isinstance(shape, SdfShape)]
+        meshes = [shape for shape in self.core_shapes if isinstance(shape, MeshShape)]
+        spheres = [shape for shape in self.core_shapes if isinstance(shape, SphereShape)]
+        sdfs = [shape.ready.parts for shape in self.core_shapes if isinstance(shape, SdfShape)]
         numbers, matrices = instances_of(meshes)
         # What the core counts as a shape is an instance; `_owner` says of which of ours.
-        self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
+        self.core_owner = np.concatenate([numbers, np.arange(len(meshes), len(self.core_shapes))])
         materials = np.array([material for _, _, material in placed], np.int32)
-        emission = np.array([mean_emission(scene, s) for s in self._shapes], np.float64)
+        emission = np.array([mean_emission(scene, s) for s in self.core_shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self.params: dict[str, Array] = self._initial_params()
         self._param_shapes = {name: value.shape for name, value in self.params.items()}
@@ -114,13 +116,13 @@ class PathTracer:
             spheres=np.array(balls, np.float32).reshape(-1, 4),
             sdfs=sdfs,
             **closing_arrays(meshes, spheres),
-            material=materials[self._owner],
-            emission=emission[self._owner],
+            material=materials[self.core_owner],
+            emission=emission[self.core_owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],
         )
-        glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
+        glows = glows_of(scene, [self.core_shapes[owner] for owner in self.core_owner])
         self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
-        media = self._media.core_arguments(self._shapes, self._owner)
+        media = self._media.core_arguments(self.core_shapes, self.core_owner)
         if media is not None:
             self._geometry.set_media(**media)
         marked = [m.model + "+alpha" * m.has_opacity for m in scene.materials.values()]
@@ -133,7 +135,7 @@ class PathTracer:
                 params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
         for name, texture in self.scene.textures.items():
             params[f"textures.{name}"] = texture.values
-        for name, shape in zip(self._emissions, self._shapes, strict=True):
+        for name, shape in zip(self._emissions, self.core_shapes, strict=True):
             if shape.emission.any() or name.startswith("lights."):
                 params[name] = shape.emission
         for light in self._lights:
@@ -191,7 +193,7 @@ class PathTracer:
         texels = None if sampling_params is None else self._texels(sampling_params)
         media = None if sampling_params is None else self._media.rows(sampling_params, self.dtype)
         _core.trace_paths(
-            **self._arguments(view),
+            **self.core_arguments(view),
             sampling_parameters=other,
             sampling_textures=texels,
             sampling_media=media,
@@ -254,11 +256,11 @@ class PathTracer:
 
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
         """What `backward` of the core makes of `view` and `given`, by name, for a `function`."""
-        arguments = self._arguments(view)
+        arguments = self.core_arguments(view)
         gradient = {name: np.zeros_like(value) for name, value in blocks_of(arguments).items()}
         backward(**arguments, **given, gradient=gradient)
-        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
-        np.add.at(d_shapes, self._owner, gradient["emission"])
+        d_shapes = np.zeros((len(self.core_shapes), 3), self.dtype)
+        np.add.at(d_shapes, self.core_owner, gradient["emission"])
         gradients = dict(zip(self._emissions, d_shapes, strict=True))
         for i, name in enumerate(self.scene.textures):
             gradients[f"textures.{name}"] = gradient[f"textures.{i}"]
@@ -339,7 +341,7 @@ class PathTracer:
         `params` is what to say instead of the tracer's own; `camera` None takes the scene's.
         """
         given = self.params if params is None else params
-        arguments = self._arguments(self.scene.camera if camera is None else camera, given)
+        arguments = self.core_arguments(self.scene.camera if camera is None else camera, given)
         return {**arguments, **self._wide(given), "media": self._media.rows(given, np.float64)}
 
     def wide_changes(self, step: dict[str, Array]) -> dict[str, Any]:
@@ -358,11 +360,14 @@ class PathTracer:
         shining = np.array([params.get(name, black) for name in self._emissions], self.dtype)
         return {
             "parameters": self._material_row(params),
-            "emission": shining[self._owner],
+            "emission": shining[self.core_owner],
             "textures": self._texels(params),
         }
 
-    def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
+    def core_arguments(
+        self, camera: Camera, params: dict[str, Array] | None = None
+    ) -> dict[str, Any]:
+        """The scene as functions of the core take it, in the tracer's dtype."""
         given = self.params if params is None else params
         self._check_params(given)
         lens = self.scene.lens.radius, self.scene.lens.focus
