@@ -1,8 +1,10 @@
 #include "photograd/raster/rasterize.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "kernels/kernels.h"
 #include "photograd/core/parallel.h"
 #include "photograd/raster/owner_sums.h"
 
@@ -30,6 +32,44 @@ bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out
     const bool nearer = passes(rules.depth, z, out.depth[pixel]);
     if (out.stencil) stencil.apply(nearer ? stencil.pass : stencil.depth_fail, out.stencil[pixel]);
     return nearer;
+}
+
+/// Pixels [x0, x1) of a row outside of which an edge leaves nothing; one more on either side than
+/// rounding could ask for.
+void narrow(const ScreenTriangle& triangle, double y, int& x0, int& x1) {
+    for (int i = 0; i < 3; ++i) {
+        const Vec3<double>& line = triangle.edges.line[i];
+        const double at = -(line.y * y + line.z) / line.x;  // where the edge crosses the row
+        if (!(at > -1e9 && at < 1e9)) continue;
+        if (line.x > 0) x0 = std::max(x0, static_cast<int>(std::floor(at)) - 2);
+        if (line.x < 0) x1 = std::min(x1, static_cast<int>(std::floor(at)) + 3);
+    }
+}
+
+/// What a depth buffer alone decides: by lanes.
+void draw_spans(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
+                const TileBounds& tile, int width, const VisibilityBuffers& out) {
+    DrawSpan span{};
+    for (int i = 0; i < 3; ++i) {
+        span.slope[i] = triangle.edges.line[i].x;
+        span.least[i] = triangle.least[i];
+    }
+    span.det = triangle.edges.det;
+    span.near = rules.near, span.far = rules.far;
+    span.number = number;
+    for (int y = std::max(tile.y0, triangle.y0); y < std::min(tile.y1, triangle.y1); ++y) {
+        const double center = y + 0.5;
+        span.x0 = std::max(tile.x0, triangle.x0), span.x1 = std::min(tile.x1, triangle.x1);
+        narrow(triangle, center, span.x0, span.x1);
+        if (span.x0 >= span.x1) continue;
+        for (int i = 0; i < 3; ++i)
+            span.offset[i] = triangle.edges.line[i].y * center + triangle.edges.line[i].z;
+        const std::int64_t row = std::int64_t{y} * width;
+        span.depth = out.depth + row;
+        span.face = out.face ? out.face + row : nullptr;
+        span.overdraw = out.overdraw ? out.overdraw + row : nullptr;
+        kernels().draw_span(span);
+    }
 }
 
 void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
@@ -69,6 +109,9 @@ void fill_barycentrics(const PreparedTriangles& triangles, std::int64_t face_cou
 
 void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const VisibilityBuffers& out) {
     const PreparedTriangles triangles(mesh, rules.near, Reach::centers);
+    const bool by_depth_alone =
+        rules.depth == Compare::less && rules.depth_write && !out.stencil && !out.behind;
+    const auto draw = by_depth_alone ? &draw_spans : &draw_triangle;
     parallel_for(std::int64_t{triangles.columns()} * triangles.rows(), [&](std::int64_t number) {
         const int x = static_cast<int>(number % triangles.columns()) * raster_tile;
         const int y = static_cast<int>(number / triangles.columns()) * raster_tile;
@@ -77,8 +120,8 @@ void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const Visibil
         for (const std::uint32_t face : triangles.in_tile(static_cast<std::size_t>(number))) {
             const ScreenTriangle& triangle = triangles.triangle(face);
             if (!is_culled(rules.cull, triangle.front))
-                draw_triangle(triangle, out.first_face + static_cast<std::int32_t>(face), rules,
-                              tile, mesh.width, out);
+                draw(triangle, out.first_face + static_cast<std::int32_t>(face), rules, tile,
+                     mesh.width, out);
         }
         if (out.face) fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
     });

@@ -73,7 +73,8 @@ def compare_with_paths(
 
     Returns:
         A comparison for each kind of light that the scene has; with two kinds, or paths of more
-        than two segments, one of all light, last.
+        than two segments, one of all light, last. In a scene with surfaces that cover in part, of
+        all light alone: paths count what they cross as segments.
 
     Raises:
         SceneError: what `FrameScene` cannot draw.
@@ -101,6 +102,8 @@ def _techniques(scene: Scene, max_depth: int) -> list[tuple[str, Scene, int]]:
     lamps = tuple(light for light in scene.lights if light not in sky)
     black = tuple(replace(shape, emission=np.zeros(3)) for shape in scene.shapes)
     found = []
+    if any(material.has_opacity for material in scene.materials.values()):
+        return [("all light", scene, max_depth)]  # segments also count what is crossed
     if lamps or any(shape.emission.any() for shape in scene.shapes):
         found.append(("direct light", replace(scene, environment=None, lights=lamps), 2))
     if sky:
