@@ -1,5 +1,6 @@
 // The pixels of one row that a triangle may cover: what the kernel gets. Plain data only, because
-// every instruction set's translation unit includes it. The scalar form is ScreenTriangle::depth_at.
+// every instruction set's translation unit includes it. The scalar form is in
+// raster/prepared_triangles.h, depth_at.
 #pragma once
 
 #include <cstdint>

@@ -30,9 +30,9 @@ void draw_span(const DrawSpan& given) {
     }
     for (int x = s.x0; x < s.x1; ++x) {
         const double z = span_depth(s, x), held = depth[x];
-        const bool seen = (z < held) & (z < std::numeric_limits<double>::max());
-        depth[x] = seen ? z : held;
-        face[x] = seen ? s.number : face[x];
+        const bool visible = (z < held) & (z < std::numeric_limits<double>::max());
+        depth[x] = visible ? z : held;
+        face[x] = visible ? s.number : face[x];
     }
     if (overdraw)
         for (int x = s.x0; x < s.x1; ++x)

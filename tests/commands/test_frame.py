@@ -28,7 +28,7 @@ def test_a_frame_its_buffers_and_the_truth(photograd: Photograd, tmp_path: Path)
     assert 0 < result["direct light rms"] < result["all light rms"] < 0.3
     radiance = read_exr(out)[..., :3]
     assert radiance.shape == (24, 24, 3)
-    assert radiance.max() > 1  # the lamp: nothing is clipped before the tone curve
+    assert radiance.max() > 1  # what emits: nothing is clipped before the tone curve
     assert np.asarray(Image.open(out.with_suffix(".png"))).shape[:2] == (24, 24)
     for name in PANELS:
         sheet = np.asarray(Image.open(tmp_path / f"frame.{name}.png"))

@@ -31,12 +31,12 @@ def everything() -> list[Any]:
         tone_curve="agx",
     )
     result = frame_graph(FrameScene(scene), options).run({"camera": scene.camera})
-    seen, radiance = result["gbuffer"], result["radiance"]
+    visible, radiance = result["gbuffer"], result["radiance"]
     d = np.random.default_rng(1).uniform(-1, 1, radiance.shape).astype(np.float32)
-    depth = seen.depth.astype(np.float32)
-    occlusion = ssao_backward(depth, seen.shading, scene.camera, d[..., 0].copy())
+    depth = visible.depth.astype(np.float32)
+    occlusion = ssao_backward(depth, visible.shading, scene.camera, d[..., 0].copy())
     spread = bloom_backward(radiance, [0.1, 0.1], d)
     tones = tone_map_backward(radiance, d)
     shadow = result["shadows"]["lights.0"].depths
-    buffers = [seen.position, seen.shading, shadow, result["direct"], result["display"]]
+    buffers = [visible.position, visible.shading, shadow, result["direct"], result["display"]]
     return [*buffers, *occlusion.values(), *spread, tones[0], *tones[1].values()]

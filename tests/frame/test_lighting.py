@@ -34,23 +34,23 @@ SMALL = ShadowSettings(size=256)
 
 def lit(scene: Any, dtype: Any = np.float64, shadows: bool = True) -> tuple[Any, Any]:
     ready = FrameScene(scene, dtype=dtype, sphere_divisions=64)
-    seen = draw_surfaces(ready, scene.camera, "opaque", "mask")[1]
+    visible = draw_surfaces(ready, scene.camera, "opaque", "mask")[1]
     lights = delta_lights(ready)
     maps = draw_shadow_maps(ready, lights, SMALL) if shadows else {}
-    return seen, light_surfaces(ready, seen, lights, maps, SMALL)
+    return visible, light_surfaces(ready, visible, lights, maps, SMALL)
 
 
 @pytest.mark.parametrize("light", scenes.LIGHTS)
 def test_a_matte_floor_has_the_radiance_of_its_formula(light: str) -> None:
     source = scenes.LIGHTS[light]
     scene = replace(scenes.room(source), shapes=(scenes.floor(),))
-    seen, found = lit(scene, shadows=False)
-    points = seen.position[seen.covered]
+    visible, found = lit(scene, shadows=False)
+    points = visible.position[visible.covered]
     sample = source.sample(points, np.full((len(points), 2), 0.5))
     cosine = np.maximum(sample.direction[:, 1:2], 0.0)
     radiance = np.where(sample.pdf[:, None] > 0, sample.radiance, 0.0)
     expected = np.array([0.6, 0.5, 0.4]) / np.pi * cosine * radiance
-    np.testing.assert_allclose(found[seen.covered], expected, rtol=1e-10, atol=1e-14)
+    np.testing.assert_allclose(found[visible.covered], expected, rtol=1e-10, atol=1e-14)
     assert found.any()
 
 
@@ -71,11 +71,11 @@ def test_forward_and_deferred_shading_make_one_picture() -> None:
     ready = FrameScene(scene)
     lights = delta_lights(ready)
     maps = draw_shadow_maps(ready, lights, SMALL)
-    seen = draw_surfaces(ready, scene.camera, "opaque", "mask")[1]
-    deferred = light_surfaces(ready, seen, lights, maps, SMALL)
+    visible = draw_surfaces(ready, scene.camera, "opaque", "mask")[1]
+    deferred = light_surfaces(ready, visible, lights, maps, SMALL)
     forward, shaded = light_forward(ready, scene.camera, lights, maps, SMALL)
     np.testing.assert_allclose(forward, deferred, atol=1e-5)
-    assert shaded > seen.covered.sum()  # of hidden surfaces, too
+    assert shaded > visible.covered.sum()  # of hidden surfaces, too
 
 
 def checker(size: int, low: float) -> Any:

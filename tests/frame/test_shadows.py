@@ -28,8 +28,11 @@ class Shadowed:
     def __init__(self, name: str) -> None:
         self.scene = FrameScene(scenes.room(scenes.LIGHTS[name]), dtype=np.float64)
         camera = scenes.camera(192, 128)
-        seen = draw_surfaces(self.scene, camera, "opaque")[1]
-        self.points, self.normals = seen.position[seen.covered], seen.normal[seen.covered]
+        visible = draw_surfaces(self.scene, camera, "opaque")[1]
+        self.points, self.normals = (
+            visible.position[visible.covered],
+            visible.normal[visible.covered],
+        )
         (self.light,) = delta_lights(self.scene)
         wi, irradiance = self.light.arriving(self.points)
         self.reached = (irradiance.sum(axis=1) > 0) & ((wi * self.normals).sum(axis=1) > 1e-3)

@@ -25,17 +25,19 @@ def surfaces(scene: Any, **options: Any) -> Any:
 
 
 def functions() -> tuple[Any, Any, dict[str, Any]]:
-    seen = surfaces(replace(scenes.room(None), camera=scenes.camera(24, 16)))
+    visible = surfaces(replace(scenes.room(None), camera=scenes.camera(24, 16)))
     names = list(asdict(WIDE))
 
     def settings(p: dict[str, Any]) -> SsaoSettings:
         return SsaoSettings(**{name: float(p[name][0]) for name in names})
 
     def forward(p: dict[str, Any]) -> Any:
-        return ssao(seen.depth, seen.shading, seen.camera, settings(p), samples=8)
+        return ssao(visible.depth, visible.shading, visible.camera, settings(p), samples=8)
 
     def backward(p: dict[str, Any], d: Any) -> dict[str, Any]:
-        found = ssao_backward(seen.depth, seen.shading, seen.camera, d, settings(p), samples=8)
+        found = ssao_backward(
+            visible.depth, visible.shading, visible.camera, d, settings(p), samples=8
+        )
         return {name: np.array([found[name]]) for name in names}
 
     return forward, backward, {name: np.array([value]) for name, value in asdict(WIDE).items()}
@@ -58,8 +60,8 @@ def test_wrong_gradients_are_noticed() -> None:
 def test_a_flat_wall_does_not_occlude_itself() -> None:
     scene = replace(scenes.room(None), shapes=(scenes.floor(),))
     for bias in (0.0, 0.05):
-        seen = surfaces(scene)
-        found = ssao(seen.depth, seen.shading, seen.camera, replace(WIDE, bias=bias))
+        visible = surfaces(scene)
+        found = ssao(visible.depth, visible.shading, visible.camera, replace(WIDE, bias=bias))
         if bias:
             np.testing.assert_array_equal(found, 1.0)
         else:
@@ -72,22 +74,22 @@ def test_a_flat_wall_does_not_occlude_itself() -> None:
 def test_it_is_dark_where_the_traced_truth_is(name: str, part: float) -> None:
     scene = scenes.room(None) if name == "room" else builtin_scene(name, 64)
     ready = FrameScene(scene, dtype=np.float64)
-    seen = draw_surfaces(ready, scene.camera, "opaque", "glass")[1]
+    visible = draw_surfaces(ready, scene.camera, "opaque", "glass")[1]
     radius = part * ready.radius
     settings = SsaoSettings(radius=radius, falloff=0.25, bias=0.05, strength=2.0)
-    found = ssao(seen.depth, seen.shading, scene.camera, settings, samples=32)
+    found = ssao(visible.depth, visible.shading, scene.camera, settings, samples=32)
     sums = Accumulation.empty(scene.camera.height, scene.camera.width)
     PathTracer(scene, allow_incomplete=True).add_occlusion(sums, 64, seed=0, radius=radius)
     truth = sums.mean[..., 0]
-    inside = seen.covered
+    inside = visible.covered
     assert np.corrcoef(found[inside], truth[inside])[0, 1] > 0.7
 
 
 def test_corners_are_darker_than_what_is_around_them() -> None:
-    seen = surfaces(scenes.room(None))
-    found = ssao(seen.depth, seen.shading, seen.camera, WIDE, samples=64)
-    ball = np.linalg.norm(seen.position - [0.5, 0.0, 0.0], axis=-1)
-    on_floor = seen.covered & (np.abs(seen.position[..., 1]) < 1e-6)
+    visible = surfaces(scenes.room(None))
+    found = ssao(visible.depth, visible.shading, visible.camera, WIDE, samples=64)
+    ball = np.linalg.norm(visible.position - [0.5, 0.0, 0.0], axis=-1)
+    on_floor = visible.covered & (np.abs(visible.position[..., 1]) < 1e-6)
     near, far = on_floor & (ball < 0.35), on_floor & (ball > 1.0)
     assert found[near].mean() < found[far].mean() - 0.1
-    assert (found[~seen.covered] == 1.0).all()
+    assert (found[~visible.covered] == 1.0).all()

@@ -21,6 +21,7 @@ DESCRIBED = (
     "photograd.capture",
     "photograd.fields",
     "photograd.fitting",
+    "photograd.frame",
     "photograd.raster",
     "photograd.representation",
     "photograd.splats",

@@ -14,6 +14,7 @@ from photograd.raster import (
     rasterize_backward,
 )
 
+from support.frame_workload import frames
 from support.network_workload import networks
 
 
@@ -29,4 +30,4 @@ def rasters() -> None:
     FaceLookup(positions, faces, size).nearest(np.array([[1.5, 1.5], [-1.0, 3.0]]))
 
 
-LATER = (networks, rasters)
+LATER = (networks, rasters, frames)

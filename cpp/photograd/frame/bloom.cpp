@@ -14,7 +14,8 @@ std::int64_t mirrored(std::int64_t i, std::int64_t n) {
     return i < n ? i : std::max<std::int64_t>(2 * n - 1 - i, 0);
 }
 
-/// A linear map of lines: line i of the output is sum_k weight(i, k) line source(i, k) of the input.
+/// A linear map of lines: line i of the output is the sum over k of weight(i, k) times line
+/// source(i, k) of the input.
 struct Halving {
     static constexpr int taps = 4;
     std::int64_t n;

@@ -4,8 +4,8 @@
 //     y = x (1 + x / w^2) / (1 + x)
 //   rational fit of the ACES reference transform [Narkowicz2016], coefficients a, b, c, d, e:
 //     y = x (a x + b) / (x (c x + d) + e)
-//   contrast curve of AgX [Sobotka2022], on t = (log2 x - lo) / (hi - lo), with slope s at the pivot
-//   (p, q) and the power r of toe and shoulder:
+//   contrast curve of AgX [Sobotka2022], on t = (log2 x - lo) / (hi - lo), with slope s at the
+//   pivot (p, q) and the power r of toe and shoulder:
 //     u = s |t - p| / k,  h = u / (1 + u^r)^(1/r),  y = q +- k h above or below p,
 //     k = s m / b^(1/r),  b = (s m / n)^r - 1,  (m, n) = (1 - p, 1 - q) above and (p, q) below,
 //     so that the curve runs from (0, 0) through the pivot to (1, 1). Derivatives:
@@ -52,8 +52,8 @@ inline void aces_fit_backward(R x, const R* k, R d_y, R& d_x, R* d_k) {
 inline constexpr double agx_pivot_x = 10.0 / 16.5;         // of log2: 0.18 lies 10 stops above lo
 inline constexpr double agx_pivot_y = 0.4894370895738783;  // 0.18^(1/2.4)
 
-/// One side of the pivot, at t from 0 to 1. The slope has to be above 1.3, that of the straight line
-/// from the pivot to (1, 1).
+/// One side of the pivot, at t from 0 to 1. The slope has to be above 1.3, that of the straight
+/// line from the pivot to (1, 1).
 template <class R>
 struct AgxSide {
     R slope, power, sign, steep, b, k, u, raised, h;

@@ -124,9 +124,7 @@ def frame(
         shadows=ShadowSettings(size=shadow_size),
         supersampling=supersampling,
         bloom_weights=(bloom / BLOOM_LEVELS,) * BLOOM_LEVELS if bloom else (),
-        tone_curve=None
-        if tone_curve == "none"
-        else typed("frame", "--tone-curve", ToneCurve, tone_curve),
+        tone_curve=_tone_curve(tone_curve),
         exposure=exposure,
     )
     shown = _shown(show or [])
@@ -147,11 +145,15 @@ def frame(
         rows = compare_with_paths(
             described, options, spp=spp, seed=seed, max_depth=max_depth, report=note
         )
-        pictures = [picture for row in rows for picture in _beside(row)]
-        _write_sheet(out.with_suffix(".against.png"), pictures, columns=3)
-        report |= {f"{row.technique} rms": round(row.rms, 4) for row in rows}
-        report |= {f"{row.technique} noise": f"{100 * row.noise:.1f} %" for row in rows}
+        report |= _written(rows, out)
     emit(report, as_json=as_json, title="frame")
+
+
+def _tone_curve(name: str) -> ToneCurve | None:
+    if name == "none":
+        return None
+    curve: ToneCurve = typed("frame", "--tone-curve", ToneCurve, name)
+    return curve
 
 
 def _shown(names: list[str]) -> list[str]:
@@ -167,6 +169,14 @@ def _write(result: FrameResult, out: Path) -> None:
         write_radiance(out, result["radiance"].astype(np.float32))
     display = srgb_encode(np.clip(result["display"], 0.0, 1.0))
     write_png(out.with_suffix(".png"), display.astype(np.float32))
+
+
+def _written(rows: list[Comparison], out: Path) -> dict[str, Any]:
+    """What is reported of comparisons, whose pictures are written."""
+    pictures = [picture for row in rows for picture in _beside(row)]
+    _write_sheet(out.with_suffix(".against.png"), pictures, columns=3)
+    report: dict[str, Any] = {f"{row.technique} rms": round(row.rms, 4) for row in rows}
+    return report | {f"{row.technique} noise": f"{100 * row.noise:.1f} %" for row in rows}
 
 
 def _beside(row: Comparison) -> list[Array]:

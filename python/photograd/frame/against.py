@@ -1,7 +1,7 @@
 """A frame beside the path traced truth: for each technique, the light that it claims to reproduce.
 
-    direct light    of lamps, that surfaces send on once: paths of two segments, without the sky
-    sky light       that surfaces send on once: paths of two segments, of the sky alone
+    direct light    that surfaces send on once, without the sky: paths of two segments
+    sky light       that surfaces send on once, of the sky alone: paths of two segments
     all light       paths of as many segments as are asked for; no pass makes what is sent on twice
 
 Pictures are compared as they are displayed: tone mapped or exposed, clipped to [0, 1] and encoded.
@@ -99,13 +99,13 @@ def compare_with_paths(
 def _techniques(scene: Scene, max_depth: int) -> list[tuple[str, Scene, int]]:
     """(name, the scene with this light alone, segments of the paths)."""
     sky = tuple(infinite_lights(scene).values())
-    lamps = tuple(light for light in scene.lights if light not in sky)
+    nearby = tuple(light for light in scene.lights if light not in sky)
     black = tuple(replace(shape, emission=np.zeros(3)) for shape in scene.shapes)
     found = []
     if any(material.has_opacity for material in scene.materials.values()):
         return [("all light", scene, max_depth)]  # segments also count what is crossed
-    if lamps or any(shape.emission.any() for shape in scene.shapes):
-        found.append(("direct light", replace(scene, environment=None, lights=lamps), 2))
+    if nearby or any(shape.emission.any() for shape in scene.shapes):
+        found.append(("direct light", replace(scene, environment=None, lights=nearby), 2))
     if sky:
         found.append(("sky light", replace(scene, shapes=black, environment=None, lights=sky), 2))
     if len(found) > 1 or max_depth > 2:

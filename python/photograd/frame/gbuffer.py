@@ -25,9 +25,9 @@ class GBuffer:
 
     Attributes:
         camera: that sees them.
-        depth: (H, W) float64 along the camera's axis, meters; infinite where nothing is seen.
-        material: (H, W) int32, the number of the material, -1 where nothing is seen.
-        position: (H, W, 3) in the world, meters. All further ones are 0 where nothing is seen.
+        depth: (H, W) float64 along the camera's axis, meters; infinite where nothing is visible.
+        material: (H, W) int32, the number of the material, -1 where nothing is visible.
+        position: (H, W, 3) in the world, meters. All further ones are 0 where nothing is visible.
         normal: (H, W, 3) unit, of the face, towards the viewer unless light may pass.
         shading: (H, W, 3) unit, interpolated and bent by normal maps, on the same side.
         tangent: (H, W, 3) unit, along growing u where the material has a direction; else 0.
@@ -50,7 +50,7 @@ class GBuffer:
 
     @property
     def covered(self) -> Array:
-        """(H, W) bool, whether a surface is seen."""
+        """(H, W) bool, whether a surface is visible."""
         return self.material >= 0
 
     def flat(self) -> dict[str, Array]:
@@ -80,9 +80,9 @@ def fill_gbuffer(scene: FrameScene, camera: Camera, visibility: Visibility) -> G
     call = Arguments("fill_gbuffer")
     size = (camera.height, camera.width)
     face = call.array("visibility.face", visibility.face, size, dtype=np.int32)
-    seen = face >= 0
-    shape = np.where(seen, scene.shape[face], np.int32(-1)).astype(np.int32)
-    primitive = np.where(seen, scene.primitive[face], np.int32(-1)).astype(np.int32)
+    visible = face >= 0
+    shape = np.where(visible, scene.shape[face], np.int32(-1)).astype(np.int32)
+    primitive = np.where(visible, scene.primitive[face], np.int32(-1)).astype(np.int32)
     dtype = scene.dtype
     textured = any(material.textures for material in scene.scene.materials.values())
     width = _widest(scene) if textured else 0

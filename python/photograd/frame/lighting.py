@@ -51,7 +51,7 @@ def light_surfaces(
     """
     size = surfaces.position.shape
     out = np.zeros(size, scene.dtype)
-    seen = surfaces.covered.reshape(-1)
+    visible = surfaces.covered.reshape(-1)
     points = surfaces.position.reshape(-1, 3)
     normals = surfaces.normal.reshape(-1, 3)
     for light in lights:
@@ -61,7 +61,7 @@ def light_surfaces(
             irradiance = irradiance * lit[:, None]
         if visibility is not None:
             irradiance = irradiance * visibility.reshape(-1, 1)
-        irradiance = np.where(seen[:, None], irradiance, 0)
+        irradiance = np.where(visible[:, None], irradiance, 0)
         reflect(scene, surfaces, wi.reshape(size), irradiance.reshape(size), out)
     return out
 

@@ -62,16 +62,16 @@ def ssao(
     """How much of the sky each pixel sees, before it is limited to [0, 1].
 
     Args:
-        depth: (H, W) along the camera's axis, meters; infinite where nothing is seen.
+        depth: (H, W) along the camera's axis, meters; infinite where nothing is visible.
         normals: (H, W, 3) unit normals in the world, towards the viewer; not read where nothing is
-            seen.
+            visible.
         camera: of the frame.
         settings: of the estimate.
         samples: a pixel, 1 to 256. Squares of 4 x 4 pixels share 16 turns of one pattern.
 
     Returns:
-        (H, W) of the dtype of `depth`; 1 on flat walls and where nothing is seen. Corners may fall
-        below 0.
+        (H, W) of the dtype of `depth`; 1 on flat walls and where nothing is visible. In corners it
+        may fall below 0.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays of other types or sizes than the camera's.

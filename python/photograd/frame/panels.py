@@ -103,11 +103,10 @@ def _numbers(numbers: Array) -> Array:
 
 def _depth(depth: Array) -> Array:
     """Near is bright, by the logarithm; nothing is black."""
-    seen = np.isfinite(depth)
-    if not seen.any():
+    visible = np.isfinite(depth)
+    if not visible.any():
         return np.zeros((*depth.shape, 3))
-    low, high = depth[seen].min(), depth[seen].max()
-    bright = 1.0 - 0.85 * (np.log(depth, where=seen, out=np.zeros(depth.shape)) - np.log(low)) / (
-        np.log(high / low) or 1.0
-    )
-    return _gray(np.where(seen, bright, 0.0))
+    low, high = depth[visible].min(), depth[visible].max()
+    stops = np.log(np.where(visible, depth, low) / low)
+    bright = 1.0 - 0.85 * stops / (np.log(high / low) or 1.0)
+    return _gray(np.where(visible, bright, 0.0))

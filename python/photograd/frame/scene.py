@@ -121,8 +121,8 @@ class FrameScene:
             behind=behind,
         )
         if len(numbers) < len(self.faces):
-            seen = found.covered
-            found.face[seen] = numbers[found.face[seen]]
+            visible = found.covered
+            found.face[visible] = numbers[found.face[visible]]
         return found
 
     def draw_depth(self, camera: Camera, *kinds: str) -> FloatArray:

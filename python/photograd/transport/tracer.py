@@ -19,6 +19,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
+    camera_numbers,
     cutoffs_of,
     glows_of,
     instances_of,
@@ -81,9 +82,8 @@ class PathTracer:
         remedy = "read_scene reads a file; default_scene makes one of what read_model reads"
         require_instance("PathTracer", "scene", scene, Scene, remedy)
         self.dtype = np.dtype(dtype)
-        if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            expected = "float32 or float64"
-            raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
+        if self.dtype.char not in "fd":
+            raise DtypeError(message("PathTracer", "dtype", "float32 or float64", self.dtype))
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
         self._lights = packed_lights(scene)
@@ -299,7 +299,8 @@ class PathTracer:
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))
-        _core.ambient_occlusion(self._geometry, _numbers(view), radius, seed, sums.count, spp, free)
+        numbers = camera_numbers(view)
+        _core.ambient_occlusion(self._geometry, numbers, radius, seed, sums.count, spp, free)
         sums.radiance += free[..., None]
         sums.squares += free[..., None]  # 0 and 1 are their own squares
         sums.count += spp
@@ -312,9 +313,8 @@ class PathTracer:
         It is `sample` of `pixel`, row * width + column, with `seed` and `options`, in float64.
         """
         arguments = self.wide_arguments()
-        found: list[dict[str, Any]] = _core.trace_path(
-            **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
-        )
+        given = {**arguments, "options": options.numbers(seed)}
+        found: list[dict[str, Any]] = _core.trace_path(**given, pixel=pixel, sample=sample)
         return found
 
     def _material_row(self, params: dict[str, Array]) -> Array:
@@ -367,37 +367,31 @@ class PathTracer:
     def core_arguments(
         self, camera: Camera, params: dict[str, Array] | None = None
     ) -> dict[str, Any]:
-        """The scene as functions of the core take it, in the tracer's dtype."""
+        """The scene in the tracer's dtype, with a `camera`; `params` None takes its own."""
         given = self.params if params is None else params
         self._check_params(given)
         lens = self.scene.lens.radius, self.scene.lens.focus
-        shutter, motion = self.scene.shutter, ()
-        if shutter is not None and camera is self.scene.camera:
-            motion = tuple(part.tolist() for part in shutter.motion(camera))
+        motion: tuple[Any, ...] = ()
+        if self.scene.shutter is not None and camera is self.scene.camera:
+            motion = tuple(part.tolist() for part in self.scene.shutter.motion(camera))
         return {
             "geometry": self._geometry,
             "models": self._models,
             **self._surfaces(given),
             "lights": [light.row(given, self.dtype) for light in self._lights],
             "media": self._media.rows(given, self.dtype),
-            "camera": (*_numbers(camera), *lens, *motion),
+            "camera": (*camera_numbers(camera), *lens, *motion),
         }
 
     def _check_params(self, given: dict[str, Array]) -> None:
         """Raises RangeError or ShapeError where names or shapes are not those of the scene."""
         known = self._param_shapes
         for name in sorted(given.keys() - known.keys() - set(self._emissions)):
-            near = choose_from(name, known)
-            got = f"{name!r}"
-            raise RangeError(message("PathTracer", "params", "names of the scene", got, near))
+            expected, near = "names of the scene", choose_from(name, known)
+            raise RangeError(message("PathTracer", "params", expected, f"{name!r}", near))
         for name in sorted(known.keys() - given.keys()):
             raise RangeError(message("PathTracer", f"params[{name!r}]", "an array", "none"))
         for name, shape in known.items():
             if np.shape(given[name]) != shape:
                 got = f"{np.shape(given[name])}"
                 raise ShapeError(message("PathTracer", f"params[{name!r}]", f"shape {shape}", got))
-
-
-def _numbers(camera: Camera) -> tuple[Any, ...]:
-    pose = camera.world_from_camera[:3].tolist()
-    return camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose
