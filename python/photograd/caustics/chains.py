@@ -187,7 +187,11 @@ class SpecularScene:
         self._bvh = Bvh(flat) if flat else None
 
     def nearest(self, o: FloatArray, d: FloatArray) -> tuple[Array, Array]:
-        """Surface number (R,), -1 for none, and triangle or far point (R,) of rays (R, 3)."""
+        """Number of the nearest surface (R,), -1 for none; triangle, or 1 for a far point (R,).
+
+        Args:
+            o, d: (R, 3) rays.
+        """
         best = np.full(len(o), np.inf)
         surface = np.full(len(o), -1)
         primitive = np.zeros(len(o), np.int64)

@@ -24,12 +24,20 @@ from photograd.types import Array, FloatArray
 
 
 def dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """(R,) inner products of the rows of (R, 3)."""
+    """(R,) inner products of the rows of (R, 3).
+
+    Args:
+        a, b: vectors.
+    """
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """(R, 3) cross products of the rows."""
+    """(R, 3) cross products of the rows.
+
+    Args:
+        a, b: (R, 3) vectors.
+    """
     out = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         out[:, i] = a[:, j] * b[:, k] - a[:, k] * b[:, j]
@@ -37,12 +45,21 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def unit(m: FloatArray) -> FloatArray:
-    """Rows of length 1."""
+    """Rows of length 1.
+
+    Args:
+        m: (R, 3), none of them 0.
+    """
     return np.asarray(m / np.sqrt(dot(m, m))[:, None])
 
 
 def unit_backward(m: FloatArray, d_n: FloatArray) -> FloatArray:
-    """dL/dm: (d_n - n (n . d_n)) / |m|."""
+    """dL/dm: (d_n - n (n . d_n)) / |m|.
+
+    Args:
+        m: as for `unit`.
+        d_n: (R, 3) dL/d of what it returned.
+    """
     length = np.sqrt(dot(m, m))[:, None]
     n = m / length
     return np.asarray((d_n - n * dot(n, d_n)[:, None]) / length)
@@ -87,7 +104,12 @@ def on_triangle(
 def on_triangle_backward(
     o: FloatArray, d: FloatArray, corners: FloatArray, normals: FloatArray | None, d_out: Point
 ) -> PointGradient:
-    """The adjoint of `on_triangle`; `surface` holds dL/dcorners and dL/dnormals (R, 3, 3)."""
+    """The adjoint of `on_triangle`; `surface` holds dL/dcorners and dL/dnormals (R, 3, 3).
+
+    Args:
+        o, d, corners, normals: as for `on_triangle`.
+        d_out: dL/d of what it returned.
+    """
     e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     s = o - corners[:, 0]
     P, Q = cross(d, e2), cross(s, e1)
@@ -165,7 +187,12 @@ def on_sphere(o: FloatArray, d: FloatArray, center: FloatArray, radius: float, f
 def on_sphere_backward(
     o: FloatArray, d: FloatArray, center: FloatArray, radius: float, far: Array, d_out: Point
 ) -> PointGradient:
-    """The adjoint of `on_sphere`; `surface` holds dL/dcenter (R, 3) and dL/dradius (R,)."""
+    """The adjoint of `on_sphere`; `surface` holds dL/dcenter (R, 3) and dL/dradius (R,).
+
+    Args:
+        o, d, center, radius, far: as for `on_sphere`.
+        d_out: dL/d of what it returned.
+    """
     near_t, far_t = sphere_distances(o, d, center, radius)
     t = np.where(far, far_t, near_t)[:, None]
     arm = o + t * d - center

@@ -108,7 +108,11 @@ class Lens:
         ]
 
     def heights_backward(self, gradients: list[SurfaceGradient]) -> FloatArray:
-        """dL/dheights (m, n) of dL/d of the three `surfaces`, in their order."""
+        """dL/dheights (m, n).
+
+        Args:
+            gradients: dL/d of the three `surfaces`, in their order.
+        """
         shape = self.heights.shape
         frame, (dx, dy) = self.frame, self.spacing
         _, back, side = gradients
@@ -157,7 +161,11 @@ class Lens:
 
 
 def slopes(h: FloatArray) -> FloatArray:
-    """(m, n) central differences between rows, one-sided at the first and the last."""
+    """(m, n) central differences between rows, one-sided at the first and the last.
+
+    Args:
+        h: (m, n).
+    """
     out = np.empty_like(h)
     out[1:-1] = 0.5 * (h[2:] - h[:-2])
     out[0], out[-1] = h[1] - h[0], h[-1] - h[-2]
@@ -165,7 +173,11 @@ def slopes(h: FloatArray) -> FloatArray:
 
 
 def slopes_backward(d_out: FloatArray) -> FloatArray:
-    """dL/dh, the transpose of `slopes`."""
+    """dL/dh, the transpose of `slopes`.
+
+    Args:
+        d_out: (m, n) dL/d of what it returned.
+    """
     d_h = np.zeros_like(d_out)
     d_h[2:] += 0.5 * d_out[1:-1]
     d_h[:-2] -= 0.5 * d_out[1:-1]

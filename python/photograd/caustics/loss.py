@@ -41,7 +41,11 @@ class PyramidLoss:
         return sum(float(np.square(r).mean()) for r in self._residuals(power))
 
     def loss_backward(self, power: FloatArray) -> FloatArray:
-        """dL/dpower (H, W)."""
+        """dL/dpower (H, W).
+
+        Args:
+            power: as for `loss`.
+        """
         total = np.zeros_like(power)
         residuals = self._residuals(power)
         for (rows, columns), r in zip(self._levels, residuals, strict=True):

@@ -94,7 +94,11 @@ def trace_lenses(
 
 
 def correlation(a: FloatArray, b: FloatArray) -> float:
-    """Pearson's, of two pictures; 0 where one is constant."""
+    """Pearson's, of two pictures; 0 where one is constant.
+
+    Args:
+        a, b: arrays of one shape.
+    """
     a, b = a - a.mean(), b - b.mean()
     scale = float(np.sqrt(np.square(a).sum() * np.square(b).sum()))
     return float((a * b).sum()) / scale if scale > 0 else 0.0

@@ -53,7 +53,12 @@ def land_backward(
     d_x: FloatArray,
     d_y: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """dL/dorigin and dL/ddirection of dL/dx and dL/dy, 0 where a ray does not land."""
+    """dL/dorigin and dL/ddirection of dL/dx and dL/dy, 0 where a ray does not land.
+
+    Args:
+        receiver, origin, direction: as for `land`.
+        d_x, d_y: (R,).
+    """
     scaled_x, scaled_y, normal = _axes(receiver)
     along = np.einsum("rk,k->r", direction, normal)
     reach = np.einsum("rk,k->r", receiver.corner - origin, normal)
@@ -85,7 +90,12 @@ def splat(receiver: IrradianceSensor, landing: Landing, power: FloatArray) -> Fl
 def splat_backward(
     receiver: IrradianceSensor, landing: Landing, power: FloatArray, d_total: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """dL/dx, dL/dy and dL/dpower of dL/dtotal (H, W)."""
+    """dL/dx, dL/dy and dL/dpower of dL/dtotal (H, W).
+
+    Args:
+        receiver, landing, power: as for `splat`.
+        d_total: (H, W).
+    """
     cells, weights, (d_w_x, d_w_y) = _shares(receiver, landing)
     values = np.append(d_total.reshape(-1), 0.0)
     d_x, d_y, d_power = (np.zeros(len(power)) for _ in range(3))
@@ -110,7 +120,12 @@ def outside(receiver: IrradianceSensor, landing: Landing, power: FloatArray) -> 
 def outside_backward(
     receiver: IrradianceSensor, landing: Landing, power: FloatArray, d_out: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """dL/dx, dL/dy and dL/dpower of `outside`."""
+    """dL/dx, dL/dy and dL/dpower of `outside`.
+
+    Args:
+        receiver, landing, power: as for `outside`.
+        d_out: dL/d of what it returned.
+    """
     x, y = _overshoot(receiver, landing)
     return 2.0 * d_out * power * x, 2.0 * d_out * power * y, d_out * (x * x + y * y)
 

@@ -55,7 +55,12 @@ def fresnel(e: FloatArray, c: FloatArray) -> FloatArray:
 def fresnel_backward(
     e: FloatArray, c: FloatArray, d_F: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """dL/de and dL/dc; 0 under total reflection."""
+    """dL/de and dL/dc; 0 under total reflection.
+
+    Args:
+        e, c: as for `fresnel`.
+        d_F: (R,) dL/d of what it returned.
+    """
     square = 1.0 - (1.0 - c * c) / (e * e)
     through = square > 0
     t = np.sqrt(np.where(through, square, 1.0))
@@ -72,7 +77,12 @@ def fresnel_backward(
 def sides(
     d: FloatArray, n: FloatArray, eta: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """+1 from outside and -1 from inside (R,), the normal towards the ray, c and e."""
+    """+1 from outside and -1 from inside (R,), the normal towards the ray, c and e.
+
+    Args:
+        d, n: (R, 3) as for `scatter`.
+        eta: index inside over outside.
+    """
     along = dot(d, n)
     side = np.where(along < 0, 1.0, -1.0)
     return side, side[:, None] * n, np.abs(along), np.where(along < 0, eta, 1.0 / eta)
@@ -109,7 +119,12 @@ def scatter_backward(
     pmf: FloatArray,
     d_out: Scattered,
 ) -> ScatteredGradient:
-    """The adjoint of `scatter`."""
+    """The adjoint of `scatter`.
+
+    Args:
+        d, n, eta, reflected, pmf: as for `scatter`.
+        d_out: dL/d of what it returned.
+    """
     side, n, c, e = sides(d, n, 1.0 if eta is None else eta)
     back = reflected if eta is not None else np.ones(len(d), bool)
     d_w = d_out.direction
