@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from photograd import (
         bsdf,
         capture,
+        caustics,
         errors,
         fields,
         fitting,
@@ -113,6 +114,7 @@ __all__ = [
     "bsdf",
     "builtin_scene",
     "capture",
+    "caustics",
     "check_gradients",
     "errors",
     "estimate_bounds",

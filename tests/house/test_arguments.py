@@ -19,6 +19,7 @@ finally:
 
 DESCRIBED = (
     "photograd.capture",
+    "photograd.caustics",
     "photograd.fields",
     "photograd.fitting",
     "photograd.frame",
