@@ -39,10 +39,10 @@ std::span<const std::uint8_t> kinds(ArrayArgs& args, const char* name, const py:
 }
 
 /// Contours with their coverage: the arrays are copied.
-class DrawnShapes {
+class VectorShapes {
 public:
-    DrawnShapes(const py::array& vertices, const py::array& contour_begin,
-                const py::array& shape_begin, const py::array& rule, int height, int width) {
+    VectorShapes(const py::array& vertices, const py::array& contour_begin,
+                 const py::array& shape_begin, const py::array& rule, int height, int width) {
         ArrayArgs args("draw_shapes");
         const double* points = args.within<double>("vertices", vertices, "V 2", largest_coordinate);
         if (width < 1 || height < 1 || std::int64_t{width} * height > (1 << 26))
@@ -177,11 +177,11 @@ private:
 };
 
 /// The strokes of a drawing with their outlines, one after the other.
-class DrawnStrokes {
+class VectorStrokes {
 public:
-    DrawnStrokes(const py::array& points, const py::array& corner, const py::array& line_begin,
-                 const py::array& closed, const py::array& half_width, const py::array& cap,
-                 const py::array& join, const py::array& miter_limit, int arc) {
+    VectorStrokes(const py::array& points, const py::array& corner, const py::array& line_begin,
+                  const py::array& closed, const py::array& half_width, const py::array& cap,
+                  const py::array& join, const py::array& miter_limit, int arc) {
         ArrayArgs args("outline_strokes");
         const double* data = args.within<double>("points", points, "P 2", largest_coordinate);
         const auto corners = kinds(args, "corner", corner, "P", 2);
@@ -269,33 +269,34 @@ private:
 }  // namespace
 
 void bind_vector(py::module_& m) {
-    py::class_<DrawnShapes>(m, "DrawnShapes", "Filled contours and what they cover of each pixel.")
+    py::class_<VectorShapes>(m, "VectorShapes",
+                             "Filled contours and what they cover of each pixel.")
         .def(py::init<const py::array&, const py::array&, const py::array&, const py::array&, int,
                       int>(),
              py::arg("vertices"), py::arg("contour_begin"), py::arg("shape_begin"), py::arg("rule"),
              py::arg("height"), py::arg("width"))
-        .def("coverage", &DrawnShapes::cover, py::arg("shape"), py::arg("out"),
+        .def("coverage", &VectorShapes::cover, py::arg("shape"), py::arg("out"),
              "Writes the pixels that one shape may cover.")
-        .def("coverage_backward", &DrawnShapes::cover_backward, py::arg("shape"), py::arg("d_out"),
+        .def("coverage_backward", &VectorShapes::cover_backward, py::arg("shape"), py::arg("d_out"),
              py::arg("d_vertices"), "Adds to d_vertices.")
-        .def("draw", &DrawnShapes::draw, py::arg("kind"), py::arg("stop_begin"), py::arg("opacity"),
-             py::arg("geometry"), py::arg("offsets"), py::arg("colors"), py::arg("background"),
-             py::arg("out"))
-        .def("draw_backward", &DrawnShapes::draw_backward, py::arg("kind"), py::arg("stop_begin"),
+        .def("draw", &VectorShapes::draw, py::arg("kind"), py::arg("stop_begin"),
+             py::arg("opacity"), py::arg("geometry"), py::arg("offsets"), py::arg("colors"),
+             py::arg("background"), py::arg("out"))
+        .def("draw_backward", &VectorShapes::draw_backward, py::arg("kind"), py::arg("stop_begin"),
              py::arg("opacity"), py::arg("geometry"), py::arg("offsets"), py::arg("colors"),
              py::arg("background"), py::arg("d_out"), py::arg("d_vertices"), py::arg("d_opacity"),
              py::arg("d_geometry"), py::arg("d_offsets"), py::arg("d_colors"),
              py::arg("d_background"), "Adds to all that begin with d_ but d_out.");
-    py::class_<DrawnStrokes>(m, "DrawnStrokes", "Polylines and the outlines of their strokes.")
+    py::class_<VectorStrokes>(m, "VectorStrokes", "Polylines and the outlines of their strokes.")
         .def(
             py::init<const py::array&, const py::array&, const py::array&, const py::array&,
                      const py::array&, const py::array&, const py::array&, const py::array&, int>(),
             py::arg("points"), py::arg("corner"), py::arg("line_begin"), py::arg("closed"),
             py::arg("half_width"), py::arg("cap"), py::arg("join"), py::arg("miter_limit"),
             py::arg("arc"))
-        .def("outlines", &DrawnStrokes::outlines,
+        .def("outlines", &VectorStrokes::outlines,
              "Vertices (K, 2), number of vertices of each contour, line of each contour.")
-        .def("backward", &DrawnStrokes::backward, py::arg("d_vertices"), py::arg("d_points"),
+        .def("backward", &VectorStrokes::backward, py::arg("d_vertices"), py::arg("d_points"),
              py::arg("d_half_width"), "Adds to d_points and d_half_width.");
 }
 

@@ -55,56 +55,66 @@ void composite(const ShapeCoverage& coverage, const PaintTable& paints, double* 
     });
 }
 
+namespace {
+
+/// One row: writes d_values of its spans, and the sums over their pixels to `shares`, span after
+/// span from share[s]; `g` (W, 4) is dL/d of the row, and becomes dL/d of the background.
+void row_backward(const ShapeCoverage& coverage, const PaintTable& paints, std::size_t y,
+                  std::span<const std::size_t> share, double* g, std::span<double> d_values,
+                  std::span<double> shares) {
+    const std::size_t begin = coverage.row_begin()[y], end = coverage.row_begin()[y + 1];
+    if (begin == end) return;
+    const std::span<const CoverageSpan> spans = coverage.spans();
+    const std::size_t first = spans[begin].first;
+    const std::size_t past = spans[end - 1].first + static_cast<std::size_t>(spans[end - 1].count);
+    std::vector<double> row(4 * static_cast<std::size_t>(coverage.width()));
+    std::vector<double> under(4 * (past - first));
+    draw_row(coverage, paints, y, row.data(), [&](std::size_t i, const double* pixel) {
+        std::copy_n(pixel, 4, &under[4 * (i - first)]);
+    });
+    for (std::size_t s = end; s-- > begin;) {
+        const CoverageSpan& span = spans[s];
+        const Paint paint = paints.paint(span.shape);
+        double* own = &shares[share[s]];
+        const double opacity = paints.opacity[span.shape];
+        for_pixels(span, paint, [&](const Color& color, std::size_t x, std::size_t i) {
+            const double covered = coverage.values()[i];
+            const double a = covered * opacity * color[3];
+            double d_a = 0;
+            Color d_color;
+            for (std::size_t c = 0; c < 4; ++c) {
+                double& g_c = g[4 * x + c];
+                d_a += g_c * ((c < 3 ? color[c] : 1.0) - under[4 * (i - first) + c]);
+                d_color[c] = a * g_c;
+                g_c *= 1 - a;
+            }
+            d_color[3] = d_a * covered * opacity;
+            d_values[i] = d_a * opacity * color[3];
+            own[0] += d_a * covered * color[3];
+            paint_color_backward(paint, {double(x) + 0.5, span.row + 0.5}, d_color, own + 1,
+                                 own + 5, own + 5 + paint.offsets.size());
+        });
+    }
+}
+
+}  // namespace
+
 void composite_backward(const ShapeCoverage& coverage, const PaintTable& paints,
                         const double* d_out, std::span<double> d_values,
                         const PaintGradients& gradients) {
-    const std::size_t width = static_cast<std::size_t>(coverage.width());
-    const auto height = static_cast<std::size_t>(coverage.height());
+    const std::size_t numbers = 4 * static_cast<std::size_t>(coverage.width());
     const std::span<const CoverageSpan> spans = coverage.spans();
     std::vector<std::size_t> share(spans.size() + 1, 0);
     for (std::size_t s = 0; s < spans.size(); ++s)
         share[s + 1] = share[s] + share_size(paints.stop_count(spans[s].shape));
-    std::vector<double> shares(share.back(), 0.0), d_background(4 * height, 0.0);
+    std::vector<double> shares(share.back(), 0.0);
+    std::vector<double> d_under(numbers * static_cast<std::size_t>(coverage.height()));
     parallel_for(coverage.height(), [&](std::int64_t y) {
         const auto row = static_cast<std::size_t>(y);
-        const std::size_t begin = coverage.row_begin()[row], end = coverage.row_begin()[row + 1];
-        std::vector<double> picture(4 * width);
-        const std::size_t first = begin < end ? spans[begin].first : 0;
-        const std::size_t past =
-            begin < end ? spans[end - 1].first + static_cast<std::size_t>(spans[end - 1].count) : 0;
-        std::vector<double> under(4 * (past - first));
-        draw_row(coverage, paints, row, picture.data(), [&](std::size_t i, const double* pixel) {
-            std::copy_n(pixel, 4, &under[4 * (i - first)]);
-        });
-        std::copy_n(d_out + 4 * row * width, 4 * width, picture.data());  // now the gradient
-        for (std::size_t s = end; s-- > begin;) {
-            const CoverageSpan& span = spans[s];
-            const Paint paint = paints.paint(span.shape);
-            double* own = &shares[share[s]];
-            const double opacity = paints.opacity[span.shape];
-            for_pixels(span, paint, [&](const Color& color, std::size_t x, std::size_t i) {
-                double* g = &picture[4 * x];
-                const double covered = coverage.values()[i];
-                const double a = covered * opacity * color[3];
-                double d_a = 0;
-                Color d_color;
-                for (std::size_t c = 0; c < 4; ++c) {
-                    d_a += g[c] * ((c < 3 ? color[c] : 1.0) - under[4 * (i - first) + c]);
-                    d_color[c] = a * g[c];
-                    g[c] *= 1 - a;
-                }
-                d_color[3] = d_a * covered * opacity;
-                d_values[i] = d_a * opacity * color[3];
-                own[0] += d_a * covered * color[3];
-                paint_color_backward(paint, {double(x) + 0.5, span.row + 0.5}, d_color, own + 1,
-                                     own + 5, own + 5 + paint.offsets.size());
-            });
-        }
-        for (std::size_t x = 0; x < width; ++x)
-            for (std::size_t c = 0; c < 4; ++c) d_background[4 * row + c] += picture[4 * x + c];
+        std::copy_n(d_out + numbers * row, numbers, &d_under[numbers * row]);
+        row_backward(coverage, paints, row, share, &d_under[numbers * row], d_values, shares);
     });
-    for (std::size_t k = 0; k < d_background.size(); ++k)
-        gradients.background[k % 4] += d_background[k];
+    for (std::size_t k = 0; k < d_under.size(); ++k) gradients.background[k % 4] += d_under[k];
     std::vector<std::uint32_t> owner(spans.size());
     for (std::size_t s = 0; s < spans.size(); ++s) owner[s] = spans[s].shape;
     OwnerBins bins;

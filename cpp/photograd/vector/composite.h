@@ -12,7 +12,8 @@
 
 namespace photograd {
 
-/// How shapes are painted; shape s has the stops stop_begin[s] to stop_begin[s + 1] - 1, one or more.
+/// How shapes are painted; shape s has the stops stop_begin[s] to stop_begin[s + 1] - 1, at least
+/// one.
 struct PaintTable {
     std::span<const std::uint8_t> kind;        // (S,) PaintKind
     std::span<const std::int64_t> stop_begin;  // (S + 1,)

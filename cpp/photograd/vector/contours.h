@@ -16,8 +16,8 @@ inline bool is_inside(FillRule rule, int winding) {
     return rule == FillRule::nonzero ? winding != 0 : (winding & 1) != 0;
 }
 
-/// Contour c has the vertices contour_begin[c] to contour_begin[c + 1] - 1 and is closed by the edge
-/// from the last to the first; shape s has the contours shape_begin[s] to shape_begin[s + 1] - 1.
+/// Contour c has the vertices contour_begin[c] to contour_begin[c + 1] - 1; the edge from the last
+/// to the first closes it; shape s has the contours shape_begin[s] to shape_begin[s + 1] - 1.
 struct Contours {
     std::span<const double> vertices;             // (V, 2)
     std::span<const std::int64_t> contour_begin;  // (C + 1,)

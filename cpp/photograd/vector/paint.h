@@ -4,7 +4,7 @@
 //   radial   t = |p - c| / r                              geometry (c_x, c_y, r, unused)
 //
 // Between the stops k and k + 1, s = (t - o_k) / (o_{k+1} - o_k) blends their colors, red, green,
-// blue and alpha, none multiplied by another; outside of all stops the color is that of the nearest.
+// blue and alpha, none multiplied by another. Outside of all stops it is the color of the nearest.
 // Where b = a or r = 0 it is that of the last, with no derivative [SVG 1.1, Sect. 13.2].
 #pragma once
 

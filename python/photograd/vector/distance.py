@@ -1,4 +1,4 @@
-"""The exact distance to a Bezier curve, and a stroke drawn from it: what polylines are compared with.
+"""The exact distance to a Bezier curve and a stroke from it, which polylines are compared with.
 
 The closest point of a curve B to p is an end of it, or a point where <B(t) - p, B'(t)> = 0: a
 polynomial in t of degree 2 d - 1, whose real roots in [0, 1] are all tried. The derivative of the
@@ -75,7 +75,8 @@ def curve_distance_backward(control: Array, points: Array, d_distance: Array) ->
     weights = bernstein(np.full(len(t), len(control) - 1), t)[:, : len(control)]
     away = np.einsum("nk,ki->ni", weights, control) - points
     scale = np.divide(d_distance, distance, out=np.zeros_like(distance), where=distance > 0)
-    return np.einsum("nk,ni,n->ki", weights, away, scale)
+    found: FloatArray = np.einsum("nk,ni,n->ki", weights, away, scale)
+    return found
 
 
 def distance_stroke(control: Array, width: float, size: tuple[int, int]) -> FloatArray:

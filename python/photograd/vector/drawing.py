@@ -1,9 +1,9 @@
 """A drawing as arrays: what is optimized, and what stays as it is.
 
-    drawing = Drawing.of([Shape(...), Shape(...)])
-    drawing.parameters.points  # (P, 2), of all shapes
-    moved = drawing.with_parameters(replace(drawing.parameters, points=points))
-    moved.shapes  # again as shapes
+drawing = Drawing.of([Shape(...), Shape(...)])
+drawing.parameters.points  # (P, 2), of all shapes
+moved = drawing.with_parameters(replace(drawing.parameters, points=points))
+moved.shapes  # again as shapes
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class DrawingParameters:
 
     Attributes:
         points: (P, 2) control points, in pixels.
-        widths: (S,) of strokes, in pixels; of a fill 0, and without effect.
+        widths: (S,) of strokes, in pixels; of a fill 1, and without effect.
         opacities: (S,).
         geometry: (S, 4) of gradients: start and end, or center, radius and an unused number; of
             other paints without effect.
@@ -114,7 +114,7 @@ class Drawing:
         """The arrays of `shapes`; there may be none."""
         shapes = list(shapes)
         subpaths = [path for shape in shapes for path in shape.subpaths]
-        strokes = [shape.stroke or Stroke(0.0) for shape in shapes]
+        strokes = [shape.stroke or Stroke(1.0) for shape in shapes]
         rows = [_paint_rows(shape.paint) for shape in shapes]
         points = _stacked([path.points for path in subpaths], (0, 2))
         layout = DrawingLayout(
@@ -144,6 +144,9 @@ class Drawing:
 
     def with_parameters(self, parameters: DrawingParameters) -> Drawing:
         """The same shapes with other numbers.
+
+        Args:
+            parameters: of the shapes of arrays that mine have.
 
         Raises:
             DtypeError, ShapeError, RangeError: other shapes of arrays, numbers that are not finite,
@@ -207,18 +210,23 @@ class Drawing:
 
 
 def joined(drawings: Iterable[Drawing]) -> Drawing:
-    """The shapes of all drawings, in their order."""
+    """The shapes of all `drawings`, in their order."""
     return Drawing.of(shape for drawing in drawings for shape in drawing.shapes)
 
 
 def zeros_like(parameters: DrawingParameters) -> DrawingParameters:
-    """Of the same shapes."""
+    """Zeros, of the shapes of all `parameters`."""
     zeros = {name: np.zeros_like(array) for name, array in parameters.arrays().items()}
     return replace(parameters, **zeros)
 
 
 def check_shape_number(function: str, drawing: Drawing, shape: int) -> int:
     """The number of a shape, checked.
+
+    Args:
+        function: on whose behalf errors speak.
+        drawing: that has it.
+        shape: its number.
 
     Raises:
         DtypeError, RangeError, ShapeError: no number of one.

@@ -71,7 +71,13 @@ class Polylines:
 
     @classmethod
     def of(cls, layout: DrawingLayout, points: FloatArray, flattening: Flattening) -> Polylines:
-        """Of all subpaths; of a closed one, the first vertex is not repeated at its end."""
+        """Of all subpaths; of a closed one, the first vertex is not repeated at its end.
+
+        Args:
+            layout: of the drawing.
+            points: (P, 2) its control points.
+            flattening: how finely.
+        """
         count = segment_counts(layout, points, flattening)
         filled = np.diff(layout.curve_begin) > 0
         last = layout.curve_begin[1:][filled & ~layout.closed] - 1  # their ends are vertices, too
@@ -91,10 +97,16 @@ class Polylines:
 
     def vertices(self, points: FloatArray) -> FloatArray:
         """(V, 2) from control points (P, 2)."""
-        return np.einsum("vk,vki->vi", self.weight, points[self.control])
+        found: FloatArray = np.einsum("vk,vki->vi", self.weight, points[self.control])
+        return found
 
     def backward(self, d_vertices: FloatArray, points: int) -> FloatArray:
-        """dL/dpoints (P, 2); sums in the order of the vertices."""
+        """dL/dpoints (P, 2); sums in the order of the vertices.
+
+        Args:
+            d_vertices: (V, 2) dL/d of the vertices.
+            points: how many control points there are.
+        """
         rows = self.control.reshape(-1)
         found = [
             np.bincount(rows, (self.weight * d_vertices[:, i : i + 1]).reshape(-1), points)
@@ -111,15 +123,24 @@ def bernstein(degree: npt.NDArray[np.int64], t: FloatArray) -> FloatArray:
         fall.append(fall[-1] * (1 - t))
     powers = np.stack(fall, axis=1)
     left = np.clip(degree[:, None] - np.arange(4), 0, 3)
-    return BINOMIALS[degree] * np.stack(rise, axis=1) * np.take_along_axis(powers, left, axis=1)
+    falling = np.take_along_axis(powers, left, axis=1)
+    found: FloatArray = BINOMIALS[degree] * np.stack(rise, axis=1) * falling
+    return found
 
 
 def segment_counts(
     layout: DrawingLayout, points: FloatArray, flattening: Flattening
 ) -> npt.NDArray[np.int64]:
-    """(C,) segments of each curve; 1 of a line, at most 1024."""
+    """(C,) segments of each curve; 1 of a line, at most 1024.
+
+    Args:
+        layout: of the drawing.
+        points: (P, 2) its control points.
+        flattening: how finely.
+    """
     if flattening.segments is not None:
-        return np.where(layout.degree > 1, flattening.segments, 1)
+        fixed: npt.NDArray[np.int64] = np.where(layout.degree > 1, flattening.segments, 1)
+        return fixed
     p = points[layout.control]
     bend = p[:, 2:] - 2 * p[:, 1:-1] + p[:, :-2]
     size = np.sqrt(np.square(bend).sum(axis=2))
@@ -127,4 +148,5 @@ def segment_counts(
     size[layout.degree < 2] = 0
     d = layout.degree
     needed = np.sqrt(size.max(axis=1, initial=0) * d * (d - 1) / (8 * flattening.tolerance))
-    return np.clip(np.ceil(needed), 1, MOST_SEGMENTS).astype(np.int64)
+    found: npt.NDArray[np.int64] = np.clip(np.ceil(needed), 1, MOST_SEGMENTS).astype(np.int64)
+    return found

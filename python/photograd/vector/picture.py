@@ -16,7 +16,7 @@ the derivative is then that of one side.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ import numpy.typing as npt
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.types import Array, FloatArray
-from photograd.vector.drawing import Drawing, DrawingParameters, check_shape_number
+from photograd.vector.drawing import Drawing, DrawingParameters, check_shape_number, zeros_like
 from photograd.vector.flatten import Flattening, Polylines
 
 TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
@@ -85,7 +85,7 @@ class Rendering:
         everything = np.concatenate([vertices, outlines])[self._order]
         rule = np.where(layout.stroked, 0, layout.rule).astype(np.uint8)
         self._shapes = call.run(
-            _core.DrawnShapes, everything, contours, shapes, rule, height, width
+            _core.VectorShapes, everything, contours, shapes, rule, height, width
         )
         self._paints = (
             layout.kind,
@@ -101,6 +101,9 @@ class Rendering:
 
     def coverage(self, shape: int) -> FloatArray:
         """(H, W) the area that a shape covers of each pixel, whatever lies over it.
+
+        Args:
+            shape: its number.
 
         Raises:
             DtypeError, RangeError, ShapeError: no number of a shape.
@@ -126,9 +129,7 @@ class Rendering:
         d_vertices = np.zeros((len(self._order), 2))
         self._shapes.coverage_backward(shape, d_coverage, d_vertices)
         points, widths = self._paths_backward(d_vertices)
-        mine = self.drawing.parameters.arrays()
-        zeros = {name: np.zeros_like(array) for name, array in mine.items()}
-        return DrawingParameters(**(zeros | {"points": points, "widths": widths}))
+        return replace(zeros_like(self.drawing.parameters), points=points, widths=widths)
 
     def backward(self, d_picture: Array) -> RenderingGradients:
         """Derivatives of a loss.
@@ -145,18 +146,16 @@ class Rendering:
         mine = self.drawing.parameters
         names = ("opacities", "geometry", "offsets", "colors")
         d = {name: np.zeros_like(getattr(mine, name)) for name in names}
-        self._shapes.draw_backward(
-            *self._paints, d_picture, d_vertices, *d.values(), d_background
-        )
+        self._shapes.draw_backward(*self._paints, d_picture, d_vertices, *d.values(), d_background)
         points, widths = self._paths_backward(d_vertices)
         return RenderingGradients(DrawingParameters(points, widths, **d), d_background)
 
-    def _outlined(self, vertices: FloatArray, arc: int) -> _core.DrawnStrokes:
+    def _outlined(self, vertices: FloatArray, arc: int) -> _core.VectorStrokes:
         """The subpaths of strokes; those of fills are of width 0, which have no outlines."""
         layout, shape = self.drawing.layout, self.drawing.layout.shape_of_subpath
         widths = np.where(layout.stroked, self.drawing.parameters.widths, 0.0)
-        strokes: _core.DrawnStrokes = self._call.run(
-            _core.DrawnStrokes,
+        strokes: _core.VectorStrokes = self._call.run(
+            _core.VectorStrokes,
             vertices,
             self._lines.corner.astype(np.uint8),
             self._lines.begin.astype(np.int64),
@@ -204,7 +203,8 @@ class Rendering:
         d_lines = d_all[:lines].copy()
         self._strokes.backward(d_all[lines:], d_lines, d_half)
         points = self._lines.backward(d_lines, len(parameters.points))
-        return points, 0.5 * np.bincount(shape, d_half, len(parameters.widths))
+        widths: FloatArray = np.bincount(shape, d_half, len(parameters.widths)).astype(np.float64)
+        return points, 0.5 * widths
 
 
 def render(
@@ -215,6 +215,9 @@ def render(
     background: Sequence[float] | Array = TRANSPARENT,
 ) -> FloatArray:
     """The picture (H, W, 4) of a `Rendering`, where no gradient is needed.
+
+    Args:
+        drawing, size, flattening, background: as for a `Rendering`.
 
     Raises:
         DtypeError, ShapeError, RangeError: as of `Rendering`.

@@ -62,13 +62,23 @@ class Subpath:
 
     @classmethod
     def lines(cls, points: Array, *, closed: bool = False) -> Subpath:
-        """Straight lines through `points` (K, 2); `closed` adds one from the last to the first."""
+        """Straight lines.
+
+        Args:
+            points: (K, 2).
+            closed: adds a line from the last to the first.
+        """
         count = len(points)
         return cls(np.asarray(points), (1,) * (count if closed else max(count - 1, 0)), closed)
 
     @classmethod
     def circle(cls, center: Sequence[float], radius: float) -> Subpath:
-        """Four cubic curves about `center` (x, y), clockwise as the picture shows them."""
+        """Four cubic curves, clockwise as the picture shows them.
+
+        Args:
+            center: (x, y) in pixels.
+            radius: in pixels.
+        """
         c = CIRCLE
         quarter = np.array([[1.0, 0], [1, c], [c, 1]])
         turns = [np.array(rows) for rows in ([[1, 0], [0, 1]], [[0, 1], [-1, 0]])]
@@ -220,7 +230,12 @@ class Shape:
 
 
 def check_choice(function: str, argument: str, value: object, choices: Sequence[str]) -> None:
-    """Refuse what is none of the `choices`.
+    """Refuse what is none of some choices.
+
+    Args:
+        function, argument: for the error.
+        value: what was given.
+        choices: what there is.
 
     Raises:
         RangeError: names them.
