@@ -38,7 +38,7 @@ std::span<const std::uint8_t> kinds(ArrayArgs& args, const char* name, const py:
     return found;
 }
 
-/// Contours with their coverage: the arrays are copied.
+/// Contours with their area: the arrays are copied.
 class VectorShapes {
 public:
     VectorShapes(const py::array& vertices, const py::array& contour_begin,
@@ -61,7 +61,7 @@ public:
         rule_.assign(rules.begin(), rules.end());
         const py::gil_scoped_release release;
         try {
-            coverage_.emplace(this->contours(), height, width);
+            areas_.emplace(this->contours(), height, width);
         } catch (const std::length_error& failure) {
             args.range("vertices", "a drawing of fewer edges", failure.what(),
                        "flatten curves to fewer segments");
@@ -69,28 +69,28 @@ public:
     }
 
     void cover(std::int64_t shape, py::array out) const {
-        ArrayArgs args("coverage");
+        ArrayArgs args("area");
         double* to = picture(args, "out", out);
         check_shape(args, shape);
-        for (const CoverageSpan& span : coverage_->spans())
+        for (const AreaSpan& span : areas_->spans())
             if (span.shape == static_cast<std::uint32_t>(shape))
-                std::copy_n(&coverage_->values()[span.first], span.count,
-                            to + std::int64_t{span.row} * coverage_->width() + span.x0);
+                std::copy_n(&areas_->values()[span.first], span.count,
+                            to + std::int64_t{span.row} * areas_->width() + span.x0);
     }
 
     void cover_backward(std::int64_t shape, const py::array& d_out, py::array d_vertices) const {
-        ArrayArgs args("coverage_backward");
+        ArrayArgs args("area_backward");
         const double* d = args.finite<double>("d_out", d_out, "H W");
         check_size(args);
         check_shape(args, shape);
         double* to = vertex_rows(args, d_vertices);
-        std::vector<double> d_values(coverage_->values().size(), 0.0);
+        std::vector<double> d_values(areas_->values().size(), 0.0);
         const py::gil_scoped_release release;
-        for (const CoverageSpan& span : coverage_->spans())
+        for (const AreaSpan& span : areas_->spans())
             if (span.shape == static_cast<std::uint32_t>(shape))
-                std::copy_n(d + std::int64_t{span.row} * coverage_->width() + span.x0, span.count,
+                std::copy_n(d + std::int64_t{span.row} * areas_->width() + span.x0, span.count,
                             &d_values[span.first]);
-        coverage_->backward(contours(), d_values, to);
+        areas_->backward(contours(), d_values, to);
     }
 
     void draw(const py::array& kind, const py::array& stop_begin, const py::array& opacity,
@@ -102,7 +102,7 @@ public:
         double* to = args.out<double>("out", out, "H W 4");
         check_size(args);
         const py::gil_scoped_release release;
-        composite(*coverage_, paints, to);
+        composite(*areas_, paints, to);
     }
 
     void draw_backward(const py::array& kind, const py::array& stop_begin, const py::array& opacity,
@@ -122,9 +122,9 @@ public:
                                        args.out<double>("d_colors", d_colors, "K 4"),
                                        args.out<double>("d_background", d_background, "4")};
         const py::gil_scoped_release release;
-        std::vector<double> d_values(coverage_->values().size());
-        composite_backward(*coverage_, paints, d, d_values, gradients);
-        coverage_->backward(contours(), d_values, to);
+        std::vector<double> d_values(areas_->values().size());
+        composite_backward(*areas_, paints, d, d_values, gradients);
+        areas_->backward(contours(), d_values, to);
     }
 
 private:
@@ -132,7 +132,7 @@ private:
         return {vertices_, contour_begin_, shape_begin_, rule_};
     }
     void check_size(const ArrayArgs& args) const {
-        if (args.size("H") != coverage_->height() || args.size("W") != coverage_->width())
+        if (args.size("H") != areas_->height() || args.size("W") != areas_->width())
             args.range("H, W", "the size of the drawing", "another");
     }
     void check_shape(const ArrayArgs& args, std::int64_t shape) const {
@@ -173,7 +173,7 @@ private:
     std::vector<double> vertices_;
     std::vector<std::int64_t> contour_begin_, shape_begin_;
     std::vector<std::uint8_t> rule_;
-    std::optional<ShapeCoverage> coverage_;
+    std::optional<ShapeAreas> areas_;
 };
 
 /// The strokes of a drawing with their outlines, one after the other.
@@ -275,9 +275,9 @@ void bind_vector(py::module_& m) {
                       int>(),
              py::arg("vertices"), py::arg("contour_begin"), py::arg("shape_begin"), py::arg("rule"),
              py::arg("height"), py::arg("width"))
-        .def("coverage", &VectorShapes::cover, py::arg("shape"), py::arg("out"),
+        .def("area", &VectorShapes::cover, py::arg("shape"), py::arg("out"),
              "Writes the pixels that one shape may cover.")
-        .def("coverage_backward", &VectorShapes::cover_backward, py::arg("shape"), py::arg("d_out"),
+        .def("area_backward", &VectorShapes::cover_backward, py::arg("shape"), py::arg("d_out"),
              py::arg("d_vertices"), "Adds to d_vertices.")
         .def("draw", &VectorShapes::draw, py::arg("kind"), py::arg("stop_begin"),
              py::arg("opacity"), py::arg("geometry"), py::arg("offsets"), py::arg("colors"),

@@ -360,13 +360,11 @@ class VectorShapes:
         height: typing.SupportsInt | typing.SupportsIndex,
         width: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def coverage(
-        self, shape: typing.SupportsInt | typing.SupportsIndex, out: numpy.ndarray
-    ) -> None:
+    def area(self, shape: typing.SupportsInt | typing.SupportsIndex, out: numpy.ndarray) -> None:
         """
         Writes the pixels that one shape may cover.
         """
-    def coverage_backward(
+    def area_backward(
         self,
         shape: typing.SupportsInt | typing.SupportsIndex,
         d_out: numpy.ndarray,

@@ -13,7 +13,6 @@ from photograd.raster import (
     rasterize,
     rasterize_backward,
 )
-
 from photograd.vector import Drawing, Rendering, Shape, Stroke, Subpath
 
 from support.network_workload import networks

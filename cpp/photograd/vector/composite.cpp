@@ -11,7 +11,7 @@ using Color = std::array<double, 4>;
 
 /// visit(color, x, i) for the pixels of a span: what the paint is at pixel x, value number i.
 template <class Visit>
-void for_pixels(const CoverageSpan& span, const Paint& paint, Visit&& visit) {
+void for_pixels(const AreaSpan& span, const Paint& paint, Visit&& visit) {
     const bool solid = paint.kind == PaintKind::solid;
     Color color = solid ? paint_color(paint, {0, 0}) : Color{};
     for (int k = 0; k < span.count; ++k) {
@@ -24,12 +24,12 @@ void for_pixels(const CoverageSpan& span, const Paint& paint, Visit&& visit) {
 /// The spans of row y over the background in `row` (W, 4); before(i, pixel) sees each pixel before
 /// the span of value number i is put over it.
 template <class Before>
-void draw_row(const ShapeCoverage& coverage, const PaintTable& paints, std::size_t y, double* row,
+void draw_row(const ShapeAreas& coverage, const PaintTable& paints, std::size_t y, double* row,
               Before&& before) {
     for (int x = 0; x < coverage.width(); ++x)
         std::copy_n(paints.background, 4, row + 4 * static_cast<std::size_t>(x));
     for (std::size_t s = coverage.row_begin()[y]; s < coverage.row_begin()[y + 1]; ++s) {
-        const CoverageSpan& span = coverage.spans()[s];
+        const AreaSpan& span = coverage.spans()[s];
         const double opacity = paints.opacity[span.shape];
         for_pixels(span, paints.paint(span.shape),
                    [&](const Color& color, std::size_t x, std::size_t i) {
@@ -47,7 +47,7 @@ std::size_t share_size(std::size_t stops) { return 5 + 5 * stops; }
 
 }  // namespace
 
-void composite(const ShapeCoverage& coverage, const PaintTable& paints, double* out) {
+void composite(const ShapeAreas& coverage, const PaintTable& paints, double* out) {
     const std::size_t width = static_cast<std::size_t>(coverage.width());
     parallel_for(coverage.height(), [&](std::int64_t y) {
         const auto row = static_cast<std::size_t>(y);
@@ -59,12 +59,12 @@ namespace {
 
 /// One row: writes d_values of its spans, and the sums over their pixels to `shares`, span after
 /// span from share[s]; `g` (W, 4) is dL/d of the row, and becomes dL/d of the background.
-void row_backward(const ShapeCoverage& coverage, const PaintTable& paints, std::size_t y,
+void row_backward(const ShapeAreas& coverage, const PaintTable& paints, std::size_t y,
                   std::span<const std::size_t> share, double* g, std::span<double> d_values,
                   std::span<double> shares) {
     const std::size_t begin = coverage.row_begin()[y], end = coverage.row_begin()[y + 1];
     if (begin == end) return;
-    const std::span<const CoverageSpan> spans = coverage.spans();
+    const std::span<const AreaSpan> spans = coverage.spans();
     const std::size_t first = spans[begin].first;
     const std::size_t past = spans[end - 1].first + static_cast<std::size_t>(spans[end - 1].count);
     std::vector<double> row(4 * static_cast<std::size_t>(coverage.width()));
@@ -73,7 +73,7 @@ void row_backward(const ShapeCoverage& coverage, const PaintTable& paints, std::
         std::copy_n(pixel, 4, &under[4 * (i - first)]);
     });
     for (std::size_t s = end; s-- > begin;) {
-        const CoverageSpan& span = spans[s];
+        const AreaSpan& span = spans[s];
         const Paint paint = paints.paint(span.shape);
         double* own = &shares[share[s]];
         const double opacity = paints.opacity[span.shape];
@@ -99,11 +99,10 @@ void row_backward(const ShapeCoverage& coverage, const PaintTable& paints, std::
 
 }  // namespace
 
-void composite_backward(const ShapeCoverage& coverage, const PaintTable& paints,
-                        const double* d_out, std::span<double> d_values,
-                        const PaintGradients& gradients) {
+void composite_backward(const ShapeAreas& coverage, const PaintTable& paints, const double* d_out,
+                        std::span<double> d_values, const PaintGradients& gradients) {
     const std::size_t numbers = 4 * static_cast<std::size_t>(coverage.width());
-    const std::span<const CoverageSpan> spans = coverage.spans();
+    const std::span<const AreaSpan> spans = coverage.spans();
     std::vector<std::size_t> share(spans.size() + 1, 0);
     for (std::size_t s = 0; s < spans.size(); ++s)
         share[s + 1] = share[s] + share_size(paints.stop_count(spans[s].shape));

@@ -7,8 +7,8 @@
 //   d_a = <g, (red, green, blue, 1) - C>    d_(red, green, blue) = a g    d_C = (1 - a) g
 #pragma once
 
-#include "photograd/vector/coverage.h"
 #include "photograd/vector/paint.h"
+#include "photograd/vector/shape_areas.h"
 
 namespace photograd {
 
@@ -41,10 +41,9 @@ struct PaintGradients {
 };
 
 /// Writes out (H, W, 4).
-void composite(const ShapeCoverage& coverage, const PaintTable& paints, double* out);
+void composite(const ShapeAreas& coverage, const PaintTable& paints, double* out);
 /// Writes d_values, of the coverage, and adds to the gradients of paints.
-void composite_backward(const ShapeCoverage& coverage, const PaintTable& paints,
-                        const double* d_out, std::span<double> d_values,
-                        const PaintGradients& gradients);
+void composite_backward(const ShapeAreas& coverage, const PaintTable& paints, const double* d_out,
+                        std::span<double> d_values, const PaintGradients& gradients);
 
 }  // namespace photograd

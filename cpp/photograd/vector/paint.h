@@ -27,14 +27,14 @@ struct Paint {
 };
 
 /// Where between the stops a point lies: between stop and stop + 1 if `blends`, else at stop.
-struct PaintPlace {
+struct StopBlend {
     std::size_t stop;
     double share;
     bool blends;
     double distance;  // of a radial gradient, from its center
 };
 
-inline PaintPlace find_stops(const Paint& paint, Vec2<double> p) {
+inline StopBlend find_stops(const Paint& paint, Vec2<double> p) {
     const double* a = paint.geometry;
     const std::size_t last = paint.offsets.size() - 1;
     double t = 0, distance = 0;
@@ -58,7 +58,7 @@ inline PaintPlace find_stops(const Paint& paint, Vec2<double> p) {
 
 /// Red, green, blue and alpha at p.
 inline std::array<double, 4> paint_color(const Paint& paint, Vec2<double> p) {
-    const PaintPlace at = find_stops(paint, p);
+    const StopBlend at = find_stops(paint, p);
     std::array<double, 4> color;
     for (std::size_t i = 0; i < 4; ++i) {
         const double here = paint.colors[4 * at.stop + i];
@@ -72,7 +72,7 @@ inline std::array<double, 4> paint_color(const Paint& paint, Vec2<double> p) {
 inline void paint_color_backward(const Paint& paint, Vec2<double> p,
                                  const std::array<double, 4>& d_color, double* d_geometry,
                                  double* d_offsets, double* d_colors) {
-    const PaintPlace at = find_stops(paint, p);
+    const StopBlend at = find_stops(paint, p);
     double d_share = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t here = 4 * at.stop + i;

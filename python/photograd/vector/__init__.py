@@ -14,6 +14,13 @@ from __future__ import annotations
 
 from photograd.vector.distance import curve_distance, curve_distance_backward, distance_stroke
 from photograd.vector.drawing import Drawing, DrawingLayout, DrawingParameters
+from photograd.vector.fit import (
+    FittedDrawing,
+    VectorFitOptions,
+    fit_curves,
+    fit_drawing,
+    random_curves,
+)
 from photograd.vector.flatten import Flattening
 from photograd.vector.picture import Rendering, RenderingGradients, render
 from photograd.vector.shapes import (
@@ -25,11 +32,14 @@ from photograd.vector.shapes import (
     Stroke,
     Subpath,
 )
+from photograd.vector.svg_read import SvgFile, read_svg
+from photograd.vector.svg_write import svg_text, write_svg
 
 __all__ = [
     "Drawing",
     "DrawingLayout",
     "DrawingParameters",
+    "FittedDrawing",
     "Flattening",
     "LinearGradient",
     "Paint",
@@ -40,8 +50,16 @@ __all__ = [
     "Solid",
     "Stroke",
     "Subpath",
+    "SvgFile",
+    "VectorFitOptions",
     "curve_distance",
     "curve_distance_backward",
     "distance_stroke",
+    "fit_curves",
+    "fit_drawing",
+    "random_curves",
+    "read_svg",
     "render",
+    "svg_text",
+    "write_svg",
 ]

@@ -110,7 +110,7 @@ class Rendering:
         """
         shape = check_shape_number("Rendering.coverage", self.drawing, shape)
         out = np.zeros(self.picture.shape[:2])
-        self._shapes.coverage(shape, out)
+        self._shapes.area(shape, out)
         return out
 
     def coverage_backward(self, shape: int, d_coverage: Array) -> DrawingParameters:
@@ -127,7 +127,7 @@ class Rendering:
         shape = check_shape_number(call.function, self.drawing, shape)
         d_coverage = call.array("d_coverage", d_coverage, self.picture.shape[:2])
         d_vertices = np.zeros((len(self._order), 2))
-        self._shapes.coverage_backward(shape, d_coverage, d_vertices)
+        self._shapes.area_backward(shape, d_coverage, d_vertices)
         points, widths = self._paths_backward(d_vertices)
         return replace(zeros_like(self.drawing.parameters), points=points, widths=widths)
 

@@ -1,4 +1,4 @@
-#include "photograd/vector/coverage.h"
+#include "photograd/vector/shape_areas.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,13 +82,13 @@ std::pair<double, double> within(double x0, double x1, double low, double high) 
 }  // namespace
 
 /// One row's share, before all rows are put together.
-struct ShapeCoverage::Row {
-    std::vector<CoverageSpan> spans;
+struct ShapeAreas::Row {
+    std::vector<AreaSpan> spans;
     std::vector<double> values;
     std::vector<StoredPiece> pieces;
 };
 
-ShapeCoverage::ShapeCoverage(const Contours& contours, int height, int width)
+ShapeAreas::ShapeAreas(const Contours& contours, int height, int width)
     : height_(height), width_(width), shape_count_(contours.shape_count()) {
     const std::vector<std::uint32_t> next = contours.next_vertices();
     const std::vector<std::uint32_t> shape_of = shapes_of_edges(contours);
@@ -104,7 +104,7 @@ ShapeCoverage::ShapeCoverage(const Contours& contours, int height, int width)
     row_begin_.push_back(0);
     for (Row& row : rows) {
         const auto spans_before = static_cast<std::uint32_t>(spans_.size());
-        for (CoverageSpan& span : row.spans) span.first += values_.size();
+        for (AreaSpan& span : row.spans) span.first += values_.size();
         for (StoredPiece& piece : row.pieces) piece.span += spans_before;
         spans_.insert(spans_.end(), row.spans.begin(), row.spans.end());
         values_.insert(values_.end(), row.values.begin(), row.values.end());
@@ -114,9 +114,9 @@ ShapeCoverage::ShapeCoverage(const Contours& contours, int height, int width)
     }
 }
 
-void ShapeCoverage::fill_row(const Contours& contours, std::span<const std::uint32_t> next,
-                             std::span<const std::uint32_t> shape_of,
-                             std::span<const std::uint32_t> edges, int row, Row& out) const {
+void ShapeAreas::fill_row(const Contours& contours, std::span<const std::uint32_t> next,
+                          std::span<const std::uint32_t> shape_of,
+                          std::span<const std::uint32_t> edges, int row, Row& out) const {
     RowBoundary boundary;
     std::vector<double> sums;
     for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
@@ -153,8 +153,8 @@ void ShapeCoverage::fill_row(const Contours& contours, std::span<const std::uint
 }
 
 /// Adds a piece's share: the area to its right, as differences between neighboring pixels.
-void ShapeCoverage::add_area(const BoundaryPiece& piece, Vec2<double> a, Vec2<double> b, int x0,
-                             std::span<double> sums) const {
+void ShapeAreas::add_area(const BoundaryPiece& piece, Vec2<double> a, Vec2<double> b, int x0,
+                          std::span<double> sums) const {
     const double height = piece.y1 - piece.y0;
     if (height <= 0) return;
     const bool down = b.y > a.y;
@@ -183,8 +183,8 @@ void ShapeCoverage::add_area(const BoundaryPiece& piece, Vec2<double> a, Vec2<do
     });
 }
 
-void ShapeCoverage::backward(const Contours& contours, std::span<const double> d_values,
-                             double* d_vertices) const {
+void ShapeAreas::backward(const Contours& contours, std::span<const double> d_values,
+                          double* d_vertices) const {
     const std::vector<std::uint32_t> next = contours.next_vertices();
     const auto edges = static_cast<std::int64_t>(next.size());
     std::vector<std::uint32_t> owner(pieces_.size());
@@ -201,7 +201,7 @@ void ShapeCoverage::backward(const Contours& contours, std::span<const double> d
             double first = 0, second = 0;  // integrals of g and of g t
             for (std::uint32_t i = bins.begin[v]; i < bins.begin[v + 1]; ++i) {
                 const StoredPiece& piece = pieces_[bins.order[i]];
-                const CoverageSpan& span = spans_[piece.span];
+                const AreaSpan& span = spans_[piece.span];
                 const double from = a.x + piece.t0 * d.x, to = a.x + piece.t1 * d.x;
                 const auto [low, high] = within(from, to, span.x0, span.x0 + span.count);
                 if (low >= high) continue;

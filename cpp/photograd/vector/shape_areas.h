@@ -15,22 +15,22 @@
 namespace photograd {
 
 /// The pixels x0 to x0 + count - 1 of a row that a shape may cover; values from `first`.
-struct CoverageSpan {
+struct AreaSpan {
     std::uint32_t shape;
     std::int32_t row, x0, count;
     std::size_t first;
 };
 
-class ShapeCoverage {
+class ShapeAreas {
 public:
     /// Throws std::length_error where edges and rows meet more than 2^28 times.
-    ShapeCoverage(const Contours& contours, int height, int width);
+    ShapeAreas(const Contours& contours, int height, int width);
 
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] std::size_t shape_count() const { return shape_count_; }
     /// Sorted by row, then by shape; those of row y are row_begin()[y] to row_begin()[y + 1] - 1.
-    [[nodiscard]] std::span<const CoverageSpan> spans() const { return spans_; }
+    [[nodiscard]] std::span<const AreaSpan> spans() const { return spans_; }
     [[nodiscard]] std::span<const std::size_t> row_begin() const { return row_begin_; }
     /// Covered areas in [0, 1], span after span.
     [[nodiscard]] std::span<const double> values() const { return values_; }
@@ -54,7 +54,7 @@ private:
 
     int height_, width_;
     std::size_t shape_count_;
-    std::vector<CoverageSpan> spans_;
+    std::vector<AreaSpan> spans_;
     std::vector<std::size_t> row_begin_;
     std::vector<double> values_;
     std::vector<StoredPiece> pieces_;
