@@ -238,9 +238,7 @@ class _Reader:
                 [number("x1", "0%"), number("y1", "0%")],
                 [number("x2", "100%"), number("y2", "0%")],
             ]
-            _scale(matrix, "gradient")
-            start, end = applied(matrix, np.array(ends))
-            return LinearGradient(start, end, offsets, colors)
+            return LinearGradient(*_moved_line(matrix, np.array(ends)), offsets, colors)
         center = np.array([[number("cx", "50%"), number("cy", "50%")]])
         for name, k in (("fx", 0), ("fy", 1)):
             if name in own and number(name, "50%") != center[0, k]:
@@ -292,6 +290,22 @@ def _scale(matrix: FloatArray, what: str) -> float:
     if not even:
         raise refused("transform", f"one that keeps angles, for a {what}", matrix[:, :2].tolist())
     return math.sqrt(square)
+
+
+def _moved_line(matrix: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Start and end of a linear gradient that a matrix M moves.
+
+    t = <p - a, d> / <d, d> becomes <p' - a', g> with g = M^-T d / <d, d>: a gradient along g, of
+    length 1 / |g|, which is not where M takes the end unless M keeps angles.
+    """
+    start, direction = applied(matrix, ends[:1])[0], ends[1] - ends[0]
+    (a, c, _), (b, d, _) = matrix.tolist()
+    determinant, square = a * d - b * c, float(np.square(direction).sum())
+    if determinant == 0 or square == 0:
+        return start, start
+    x, y = direction / (square * determinant)
+    along = np.array([d * x - b * y, a * y - c * x])
+    return start, start + along / np.square(along).sum()
 
 
 def _bounding_box(paths: list[Subpath]) -> FloatArray:
