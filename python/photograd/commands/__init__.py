@@ -20,6 +20,7 @@ from photograd.commands import (
     recover,
     render,
     trace,
+    vectorize,
 )
 
 
@@ -32,6 +33,7 @@ def register(app: typer.Typer) -> None:
         trace,
         bake_ao,
         recover,
+        vectorize,
         convert,
         evaluate,
         gradients,
