@@ -1,6 +1,6 @@
 """Differentiable vector graphics: paths and strokes to pictures, and gradients back.
 
-    circle = Shape((Subpath.circle((32, 32), 20),), Solid((0.9, 0.2, 0.1)))
+    circle = Shape((Subpath.circle((32, 32), 20),), Solid(np.array([0.9, 0.2, 0.1])))
     line = Shape((Subpath.lines([[5, 5], [60, 50]]),), stroke=Stroke(3.0, cap="round"))
     rendering = Rendering(Drawing.of([circle, line]), (64, 64), background=(1, 1, 1, 1))
     rendering.picture  # (64, 64, 4), premultiplied

@@ -61,7 +61,7 @@ class Subpath:
         object.__setattr__(self, "degrees", degrees)
 
     @classmethod
-    def lines(cls, points: Array, *, closed: bool = False) -> Subpath:
+    def lines(cls, points: Array | Sequence[Sequence[float]], *, closed: bool = False) -> Subpath:
         """Straight lines.
 
         Args:
