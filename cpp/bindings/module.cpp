@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_reference(m);
     photograd::bind_raster(m);
     photograd::bind_frame(m);
+    photograd::bind_vector(m);
     photograd::bind_sdf(m);
     photograd::bind_bsdf(m);
     photograd::bind_principled(m);

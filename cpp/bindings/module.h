@@ -32,6 +32,7 @@ void bind_network(py::module_& m);
 void bind_neural(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
+void bind_vector(py::module_& m);
 void bind_octree(py::module_& m);
 void bind_octree_sh(py::module_& m);
 void bind_voxel_hash(py::module_& m);

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
         textures,
         transport,
         types,
+        vector,
     )
     from photograd._render import render
     from photograd.capture import Camera, Capture, View, estimate_bounds, load_capture
@@ -144,6 +145,7 @@ __all__ = [
     "textures",
     "transport",
     "types",
+    "vector",
 ]
 
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names.split()}

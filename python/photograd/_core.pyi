@@ -43,6 +43,8 @@ __all__: list[str] = [
     "SplatImage",
     "SplatOptions",
     "TexturePlan",
+    "VectorShapes",
+    "VectorStrokes",
     "VoxelHash",
     "ambient_occlusion",
     "blend_samples",
@@ -353,6 +355,91 @@ class PreparedTriangles:
     ) -> tuple[typing.Any, ...]:
         """
         Face (N,) and depth (N,) at points (x, y) of the image.
+        """
+
+class VectorShapes:
+    """
+    Filled contours and what they cover of each pixel.
+    """
+    def __init__(
+        self,
+        vertices: numpy.ndarray,
+        contour_begin: numpy.ndarray,
+        shape_begin: numpy.ndarray,
+        rule: numpy.ndarray,
+        height: typing.SupportsInt | typing.SupportsIndex,
+        width: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def area(self, shape: typing.SupportsInt | typing.SupportsIndex, out: numpy.ndarray) -> None:
+        """
+        Writes the pixels that one shape may cover.
+        """
+    def area_backward(
+        self,
+        shape: typing.SupportsInt | typing.SupportsIndex,
+        d_out: numpy.ndarray,
+        d_vertices: numpy.ndarray,
+    ) -> None:
+        """
+        Adds to d_vertices.
+        """
+    def draw(
+        self,
+        kind: numpy.ndarray,
+        stop_begin: numpy.ndarray,
+        opacity: numpy.ndarray,
+        geometry: numpy.ndarray,
+        offsets: numpy.ndarray,
+        colors: numpy.ndarray,
+        background: numpy.ndarray,
+        out: numpy.ndarray,
+    ) -> None: ...
+    def draw_backward(
+        self,
+        kind: numpy.ndarray,
+        stop_begin: numpy.ndarray,
+        opacity: numpy.ndarray,
+        geometry: numpy.ndarray,
+        offsets: numpy.ndarray,
+        colors: numpy.ndarray,
+        background: numpy.ndarray,
+        d_out: numpy.ndarray,
+        d_vertices: numpy.ndarray,
+        d_opacity: numpy.ndarray,
+        d_geometry: numpy.ndarray,
+        d_offsets: numpy.ndarray,
+        d_colors: numpy.ndarray,
+        d_background: numpy.ndarray,
+    ) -> None:
+        """
+        Adds to all that begin with d_ but d_out.
+        """
+
+class VectorStrokes:
+    """
+    Polylines and the outlines of their strokes.
+    """
+    def __init__(
+        self,
+        points: numpy.ndarray,
+        corner: numpy.ndarray,
+        line_begin: numpy.ndarray,
+        closed: numpy.ndarray,
+        half_width: numpy.ndarray,
+        cap: numpy.ndarray,
+        join: numpy.ndarray,
+        miter_limit: numpy.ndarray,
+        arc: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def backward(
+        self, d_vertices: numpy.ndarray, d_points: numpy.ndarray, d_half_width: numpy.ndarray
+    ) -> None:
+        """
+        Adds to d_points and d_half_width.
+        """
+    def outlines(self) -> tuple[typing.Any, ...]:
+        """
+        Vertices (K, 2), number of vertices of each contour, line of each contour.
         """
 
 class Sdf:

@@ -21,6 +21,7 @@ from photograd.commands import (
     recover,
     render,
     trace,
+    vectorize,
 )
 
 
@@ -34,6 +35,7 @@ def register(app: typer.Typer) -> None:
         frame,
         bake_ao,
         recover,
+        vectorize,
         convert,
         evaluate,
         gradients,

@@ -18,6 +18,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("frame", "Draw a scene as a real-time engine does: rasterized, lit pass by pass."),
     ("bake-ao", "Bake how much of the sky each texel of a mesh sees."),
     ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
+    ("vectorize", "Draw a picture with curves, as SVG."),
     ("convert", "Convert a file of Gaussians to another format."),
     ("evaluate", "Compare a recovered scene with held-out photographs."),
     ("gradients", "Draw where the loss wants matter to appear and to vanish."),
