@@ -26,9 +26,11 @@ if TYPE_CHECKING:
     from photograd import (
         bsdf,
         capture,
+        caustics,
         errors,
         fields,
         fitting,
+        frame,
         geometry,
         grids,
         images,
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
         textures,
         transport,
         types,
+        vector,
     )
     from photograd._render import render
     from photograd.capture import Camera, Capture, View, estimate_bounds, load_capture
@@ -112,6 +115,7 @@ __all__ = [
     "bsdf",
     "builtin_scene",
     "capture",
+    "caustics",
     "check_gradients",
     "errors",
     "estimate_bounds",
@@ -119,6 +123,7 @@ __all__ = [
     "fields",
     "fit",
     "fitting",
+    "frame",
     "geometry",
     "grids",
     "images",
@@ -140,6 +145,7 @@ __all__ = [
     "textures",
     "transport",
     "types",
+    "vector",
 ]
 
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names.split()}

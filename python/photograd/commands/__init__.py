@@ -15,12 +15,14 @@ from photograd.commands import (
     demo,
     evaluate,
     fit,
+    frame,
     gradients,
     info,
     recover,
     render,
     simplify,
     trace,
+    vectorize,
 )
 
 
@@ -31,9 +33,11 @@ def register(app: typer.Typer) -> None:
         fit,
         render,
         trace,
+        frame,
         bake_ao,
         simplify,
         recover,
+        vectorize,
         convert,
         evaluate,
         gradients,
