@@ -25,6 +25,7 @@ from photograd.caustics.design import CausticDesign, CausticResult, design_caust
 from photograd.caustics.lens import Lens
 from photograd.caustics.measure import Caustic, measure
 from photograd.caustics.options import CausticOptions
+from photograd.caustics.picture import discontinuities, specular_picture, specular_picture_backward
 from photograd.caustics.start import transport_lens
 from photograd.caustics.transport_map import Axes, transport_map
 
@@ -41,7 +42,10 @@ __all__ = [
     "SpecularSphere",
     "SurfaceGradient",
     "design_caustic",
+    "discontinuities",
     "measure",
+    "specular_picture",
+    "specular_picture_backward",
     "trace_chains",
     "trace_chains_backward",
     "transport_lens",

@@ -37,6 +37,9 @@ from photograd.types import Array, FloatArray
 
 OFFSET = 1e-5
 """Of the extent of all surfaces: rays that leave a surface do not meet it again within it."""
+LEAST = 0.1
+"""Probability of each lobe of glass, at least. At the rim of a sphere F goes to 1 with an infinite
+slope, and the derivative of a refraction sampled with 1 - F would have an infinite variance."""
 ENDED, TRAPPED, LEAKED = 0, 1, 2
 
 
@@ -226,9 +229,9 @@ def trace_chains(
         scene: the surfaces.
         origins: (R, 3) meters, outside of all glass.
         directions: (R, 3) of any length but zero, made unit.
-        u: (R, K) numbers in [0, 1): surface k of a ray reflects where u[:, k] is below Fresnel's
-            reflectance, with `factor` divided by the probability; behind K surfaces a ray is
-            trapped. None refracts at all glass.
+        u: (R, K) numbers in [0, 1): surface k of a ray reflects where u[:, k] is below
+            0.1 + 0.8 F, or 1 under total reflection, with `factor` divided by the probability;
+            behind K surfaces a ray is trapped. None refracts at all glass.
         max_surfaces: longest chain, for `u` None.
 
     Raises:
@@ -282,8 +285,9 @@ def _step(
     eta = surface.eta
     _, facing, c, e = sides(d, point.normal, 1.0 if eta is None else eta)
     F = np.ones(len(rays)) if eta is None else fresnel(e, c)
-    reflected = np.full(len(rays), eta is None) if u is None else u < F
-    pmf = np.ones(len(rays)) if u is None else np.where(reflected, F, 1.0 - F)
+    p = np.where(F < 1.0, LEAST + (1.0 - 2.0 * LEAST) * F, 1.0)
+    reflected = np.full(len(rays), eta is None) if u is None else u < p
+    pmf = np.ones(len(rays)) if u is None else np.where(reflected, p, 1.0 - p)
     total = (F >= 1.0) & ~reflected
     out = scatter(d, point.normal, eta, reflected, pmf)
     flat = facing if isinstance(surface, SpecularSphere) else _flat_side(surface, primitive, d)
