@@ -87,7 +87,7 @@ def design_figure(start: Array, best: CausticResult, plane: CausticResult) -> Fi
     side, gap, left = 2.0, 0.15, 0.15
     target, light = best.target, best.caustic.irradiance
     white = float(np.quantile(target, 0.99))
-    heights = 1000 * best.lenses[0].heights[::-1]
+    heights = 1000 * best.lenses[0].heights
     error = (light - target) / target.mean()
     signed = {"norm": style.symmetric_scale(0.3), "cmap": style.signed_color_map()}
     likeness = correlation(start, target)

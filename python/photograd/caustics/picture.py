@@ -29,13 +29,11 @@ from photograd.caustics.chains import (
     ENDED,
     LEAKED,
     Chains,
-    SpecularMesh,
     SpecularScene,
-    SpecularSphere,
-    Surface,
     trace_chains,
     trace_chains_backward,
 )
+from photograd.caustics.surfaces import SpecularMesh, SpecularSphere, Surface
 from photograd.errors import SceneError, message
 from photograd.transport.incomplete import Missing, WholeGradients
 from photograd.transport.material import Material
@@ -47,7 +45,7 @@ MAX_SURFACES = 16
 REMEDY = "look only at what is continuous, or ask for it with allow_incomplete=True"
 
 
-class _Seen(NamedTuple):
+class _Traced(NamedTuple):
     """One pass over all samples."""
 
     specular: SpecularScene
@@ -90,13 +88,13 @@ def _environment(function: str, scene: Scene) -> Environment:
     return scene.environment
 
 
-def _samples(function: str, scene: Scene, spp: int, seed: int) -> _Seen:
+def _samples(function: str, scene: Scene, spp: int, seed: int) -> _Traced:
     surfaces = [surface_of(function, s, scene.materials[s.material]) for s in scene.shapes]
     specular, camera = SpecularScene(surfaces), scene.camera
     count = camera.width * camera.height
     pixel, sample = np.repeat(np.arange(count), spp), np.tile(np.arange(spp), count)
-    place = {"pixel": pixel[:, None], "sample": sample[:, None]}
-    u = uniform(seed, dimension=np.arange(2 + MAX_SURFACES)[None, :], **place)
+    address = {"pixel": pixel[:, None], "sample": sample[:, None]}
+    u = uniform(seed, dimension=np.arange(2 + MAX_SURFACES)[None, :], **address)
     origins, directions = camera_rays(camera, pixel, u[:, :2])
     chains = trace_chains(specular, origins, directions, u[:, 2:])
     color = np.ones((len(pixel), 3))
@@ -107,7 +105,7 @@ def _samples(function: str, scene: Scene, spp: int, seed: int) -> _Seen:
         else:
             tint = np.asarray(material.values["tint"])
             color[step.rays] *= np.where(step.reflected[:, None], 1.0, tint)
-    return _Seen(specular, chains, color, pixel)
+    return _Traced(specular, chains, color, pixel)
 
 
 def camera_rays(camera: Camera, pixel: Array, inside: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -169,8 +167,10 @@ def specular_picture(scene: Scene, *, spp: int, seed: int) -> FloatArray:
     name = "specular_picture"
     Arguments(name).integer("spp", spp, low=1)
     environment, camera = _environment(name, scene), scene.camera
-    seen = _samples(name, scene, spp, seed)
-    radiance = seen.color * seen.chains.factor[:, None] * sky(environment, seen.chains.direction)
+    traced = _samples(name, scene, spp, seed)
+    radiance = (
+        traced.color * traced.chains.factor[:, None] * sky(environment, traced.chains.direction)
+    )
     picture: FloatArray = radiance.reshape(camera.height, camera.width, spp, 3).mean(axis=2)
     return picture
 
@@ -200,13 +200,13 @@ def specular_picture_backward(
     camera, environment = scene.camera, _environment(name, scene)
     d_image = call.array("d_image", d_image, (camera.height, camera.width, 3))
     call.integer("spp", spp, low=1)
-    seen = _samples(name, scene, spp, seed)
-    chains = seen.chains
-    d_L = d_image.reshape(-1, 3)[seen.pixel] / spp * seen.color
+    traced = _samples(name, scene, spp, seed)
+    chains = traced.chains
+    d_L = d_image.reshape(-1, 3)[traced.pixel] / spp * traced.color
     d_direction = sky_backward(environment, chains.direction, d_L * chains.factor[:, None])
     d_factor = (d_L * sky(environment, chains.direction)).sum(axis=1)
     none = np.zeros_like(d_direction)
-    surfaces = trace_chains_backward(seen.specular, chains, none, d_direction, d_factor)
+    surfaces = trace_chains_backward(traced.specular, chains, none, d_direction, d_factor)
     found: dict[str, Array] = {}
     for shape, surface in zip(scene.shapes, surfaces, strict=True):
         key = f"materials.{shape.material}.eta"
@@ -219,7 +219,7 @@ def specular_picture_backward(
             found[f"shapes.{shape.name}.vertices"] = surface.vertices
             if shape.normals is not None:
                 found[f"shapes.{shape.name}.normals"] = surface.normals
-    reasons = [] if allow_incomplete else _reasons(scene, seen)
+    reasons = [] if allow_incomplete else _reasons(scene, traced)
     missing = Missing("; ".join(reasons) + ", and moves", REMEDY)
     return WholeGradients(name, found, found, dict.fromkeys(found, missing) if reasons else {})
 
@@ -237,8 +237,8 @@ def discontinuities(scene: Scene, *, spp: int, seed: int) -> list[str]:
     return _reasons(scene, _samples("discontinuities", scene, spp, seed))
 
 
-def _reasons(scene: Scene, seen: _Seen) -> list[str]:
-    chains, found = seen.chains, []
+def _reasons(scene: Scene, traced: _Traced) -> list[str]:
+    chains, found = traced.chains, []
     met = {step.surface for step in chains.steps if len(step.rays)}
     for i in sorted(met):
         shape = scene.shapes[i]
@@ -250,14 +250,14 @@ def _reasons(scene: Scene, seen: _Seen) -> list[str]:
             found.append(f"the rim of '{shape.name}', which absorbs, is seen")
     if (chains.state == LEAKED).any():
         found.append("blended normals send rays through faces")
-    edges = [scene.shapes[i] for i in sorted(_edges(seen))]
+    edges = [scene.shapes[i] for i in sorted(_edges(traced))]
     meshes = [shape.name for shape in edges if isinstance(shape, MeshShape)]
     return found + [f"an edge of '{name}' is seen" for name in meshes]
 
 
-def _edges(seen: _Seen) -> set[int]:
+def _edges(traced: _Traced) -> set[int]:
     """Surfaces that some rays meet next, and others of the same lobes so far do not."""
-    chains = seen.chains
+    chains = traced.chains
     count = len(chains.origin)
     lobes, depth = np.ones(count, np.int64), np.zeros(count, np.int64)
     after: dict[tuple[int, int], set[int]] = {}

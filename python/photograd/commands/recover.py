@@ -144,16 +144,10 @@ def recover(
             said = recover_lens(
                 described, lens, receiver, images, design, out, resume=resume, stopping=stopping
             )
-        emit(said, as_json=as_json, title="recover")
-        if stopping():
-            raise typer.Exit(stopping.exit_code or 1)
+        finish(said, said["step"], steps, stopping, as_json=as_json)
         return
     context.with_resource(run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"))
-    if camera and len(camera) != len(target):
-        expected = f"one for each of {len(target)} targets"
-        raise RangeError(message("recover", "--camera", expected, len(camera)))
-    cameras = [read_scene(path).camera for path in camera] if camera else [None] * len(images)
-    targets = [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
+    targets = with_cameras(images, camera)
     options = RecoveryOptions(
         steps=steps,
         spp=spp,
@@ -169,10 +163,30 @@ def recover(
         note(f"resumed at step {job.step_number} of {steps}")
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping)
-    emit(write_result(job, result, out), as_json=as_json, title="recover")
-    if not result.finished:
-        note(f"stopped at step {result.step} of {steps}; continue with --resume")
+    finish(write_result(job, result, out), result.step, steps, stopping, as_json=as_json)
+
+
+def finish(
+    said: dict[str, Any], step: int, steps: int, stopping: StopRequest, *, as_json: bool
+) -> None:
+    """Print the last line; a run that was stopped ends with the status of its signal."""
+    emit(said, as_json=as_json, title="recover")
+    if step < steps:
+        note(f"stopped at step {step} of {steps}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def with_cameras(images: list[Any], paths: list[Path] | None) -> list[Target]:
+    """Targets, each with the camera of a scene file, if there are any.
+
+    Raises:
+        RangeError: another number of files than of pictures.
+    """
+    if paths and len(paths) != len(images):
+        expected = f"one for each of {len(images)} targets"
+        raise RangeError(message("recover", "--camera", expected, len(paths)))
+    cameras = [read_scene(path).camera for path in paths] if paths else [None] * len(images)
+    return [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
 
 
 def read_target(path: Path) -> Any:
