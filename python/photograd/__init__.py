@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         errors,
         fields,
         fitting,
+        frame,
         geometry,
         grids,
         images,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
         textures,
         transport,
         types,
+        vector,
     )
     from photograd._render import render
     from photograd.capture import Camera, Capture, View, estimate_bounds, load_capture
@@ -121,6 +123,7 @@ __all__ = [
     "fields",
     "fit",
     "fitting",
+    "frame",
     "geometry",
     "grids",
     "images",
@@ -142,6 +145,7 @@ __all__ = [
     "textures",
     "transport",
     "types",
+    "vector",
 ]
 
 _MODULE_OF = {name: module for module, names in _HOME.items() for name in names.split()}

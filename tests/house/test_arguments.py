@@ -22,10 +22,12 @@ DESCRIBED = (
     "photograd.caustics",
     "photograd.fields",
     "photograd.fitting",
+    "photograd.frame",
     "photograd.raster",
     "photograd.representation",
     "photograd.splats",
     "photograd.transport",
+    "photograd.vector",
 )
 """Packages whose functions describe all."""
 CEILING = {"photograd": 190, "photograd_course": 480}

@@ -1,4 +1,4 @@
-"""A little of everything that the rasterizer asks of the core."""
+"""A little of everything that the rasterizer and vector drawings ask of the core."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from photograd.raster import (
     rasterize,
     rasterize_backward,
 )
+from photograd.vector import Drawing, Rendering, Shape, Stroke, Subpath
 
+from support.frame_workload import frames
 from support.network_workload import networks
 
 
@@ -29,4 +31,11 @@ def rasters() -> None:
     FaceLookup(positions, faces, size).nearest(np.array([[1.5, 1.5], [-1.0, 3.0]]))
 
 
-LATER = (networks, rasters)
+def drawings() -> None:
+    path = Subpath(np.array([[1.0, 1], [4, -2], [3, 4], [0, 2]]), (2, 1))
+    rendering = Rendering(Drawing.of([Shape((path,)), Shape((path,), stroke=Stroke(1.0))]), (4, 5))
+    rendering.backward(np.ones((4, 5, 4)))
+    rendering.coverage_backward(1, rendering.coverage(1))
+
+
+LATER = (networks, rasters, frames, drawings)

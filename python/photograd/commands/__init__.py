@@ -15,11 +15,13 @@ from photograd.commands import (
     demo,
     evaluate,
     fit,
+    frame,
     gradients,
     info,
     recover,
     render,
     trace,
+    vectorize,
 )
 
 
@@ -30,8 +32,10 @@ def register(app: typer.Typer) -> None:
         fit,
         render,
         trace,
+        frame,
         bake_ao,
         recover,
+        vectorize,
         convert,
         evaluate,
         gradients,

@@ -1,0 +1,1 @@
+"""Vector graphics: areas, strokes, gradients, files, fits."""
