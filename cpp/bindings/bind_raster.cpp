@@ -1,4 +1,6 @@
 // The rasterizer; photograd.raster is the typed face. All arrays are float64 or integers.
+#include <optional>
+
 #include "array_args.h"
 #include "module.h"
 #include "photograd/raster/interpolate.h"
@@ -66,7 +68,8 @@ StencilRules stencil_of(const ArrayArgs& args, const std::array<int, 7>& n) {
 void draw(const py::array& positions, const py::array& faces, double near, double far, int cull,
           int depth_test, bool depth_write, const std::array<int, 7>& stencil_rules,
           std::int32_t first_face, py::array face, py::array barycentrics, py::array depth,
-          const py::object& stencil, const py::object& overdraw) {
+          const py::object& stencil, const py::object& overdraw,
+          const std::optional<py::array>& behind) {
     ArrayArgs args("rasterize");
     std::int32_t* numbers = args.out<std::int32_t>("face", face, "H W");
     VisibilityBuffers out{numbers,
@@ -74,7 +77,8 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
                           args.out<double>("depth", depth, "H W"),
                           nullptr,
                           first_face,
-                          nullptr};
+                          nullptr,
+                          behind ? args.in<double>("behind", *behind, "H W") : nullptr};
     py::array bytes, counts;
     if (!stencil.is_none()) {
         bytes = stencil.cast<py::array>();
@@ -96,6 +100,19 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
                               near,
                               far,
                               stencil_of(args, stencil_rules)};
+    const py::gil_scoped_release release;
+    rasterize(mesh, rules, out);
+}
+
+void draw_depth(const py::array& positions, const py::array& faces, double near, double far,
+                py::array depth) {
+    ArrayArgs args("rasterize_depth");
+    const VisibilityBuffers out{
+        nullptr, nullptr, args.out<double>("depth", depth, "H W"), nullptr, 0, nullptr, nullptr};
+    const ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
+                                    static_cast<int>(args.size("W")));
+    check_range(args, near, far);
+    const FragmentRules rules{Cull::none, Compare::less, true, near, far, {}};
     const py::gil_scoped_release release;
     rasterize(mesh, rules, out);
 }
@@ -196,8 +213,11 @@ void bind_raster(py::module_& m) {
     m.def("rasterize", &draw, py::arg("positions"), py::arg("faces"), py::arg("near"),
           py::arg("far"), py::arg("cull"), py::arg("depth_test"), py::arg("depth_write"),
           py::arg("stencil_rules"), py::arg("first_face"), py::arg("face"), py::arg("barycentrics"),
-          py::arg("depth"), py::arg("stencil"), py::arg("overdraw"),
-          "Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None.");
+          py::arg("depth"), py::arg("stencil"), py::arg("overdraw"), py::arg("behind") = py::none(),
+          "Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; "
+          "only what lies behind `behind` (H, W) unless None.");
+    m.def("rasterize_depth", &draw_depth, py::arg("positions"), py::arg("faces"), py::arg("near"),
+          py::arg("far"), py::arg("depth"), "Draws onto depth (H, W) alone.");
     m.def("rasterize_backward", &draw_backward, py::arg("positions"), py::arg("faces"),
           py::arg("face"), py::arg("d_barycentrics"), py::arg("d_depth"), py::arg("d_positions"),
           "Adds to d_positions.");

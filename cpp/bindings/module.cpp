@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_geometry(m);
     photograd::bind_reference(m);
     photograd::bind_raster(m);
+    photograd::bind_frame(m);
     photograd::bind_vector(m);
     photograd::bind_sdf(m);
     photograd::bind_bsdf(m);
@@ -19,6 +20,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_diffusion(m);
     photograd::bind_scene(m);
     photograd::bind_path(m);
+    photograd::bind_gbuffer(m);
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);

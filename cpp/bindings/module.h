@@ -11,6 +11,8 @@ void bind_errors(py::module_& m);
 void bind_core(py::module_& m);
 void bind_ops(py::module_& m);
 void bind_march(py::module_& m);
+void bind_frame(py::module_& m);
+void bind_gbuffer(py::module_& m);
 void bind_geometry(py::module_& m);
 void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);

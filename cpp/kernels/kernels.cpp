@@ -3,6 +3,7 @@
 #include "kernels/kernels.h"
 
 #include "kernels/blend_splats.inl"
+#include "kernels/draw_span.inl"
 #include "kernels/gather_sparse_sh.inl"
 #include "kernels/hash_encoding.inl"
 #include "kernels/march_dense.inl"
@@ -30,6 +31,7 @@ extern const Kernels table{
     .march_sparse_sh_backward = &march_sparse_sh_backward,
     .march_sparse_sh_weights = &march_sparse_sh_weights,
     .march_sparse_sh_gather = &march_sparse_sh_gather,
+    .draw_span = &draw_span,
     .hash_encode = &hash_encode,
     .hash_scatter = &hash_scatter,
     .hash_points = &hash_points,

@@ -2,6 +2,7 @@
 // that the processor has, or the one that the environment variable PHOTOGRAD_ISA names.
 #pragma once
 
+#include "kernels/draw_span.h"
 #include "kernels/hash_encoding.h"
 #include "kernels/march_dense.h"
 #include "kernels/march_sparse_sh.h"
@@ -36,6 +37,7 @@ struct Kernels {
     void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
+    void (*draw_span)(const DrawSpan&);
     void (*hash_encode)(const HashEncode&, std::int64_t begin, std::int64_t end);
     void (*hash_scatter)(const HashScatter&, std::int64_t begin, std::int64_t end);
     void (*hash_points)(const HashPoints&, std::int64_t begin, std::int64_t end);

@@ -48,6 +48,8 @@ __all__: list[str] = [
     "VoxelHash",
     "ambient_occlusion",
     "blend_samples",
+    "bloom",
+    "bloom_backward",
     "bsdfs",
     "build_mips",
     "build_mips_backward",
@@ -67,6 +69,7 @@ __all__: list[str] = [
     "exp",
     "expm1",
     "fields",
+    "fill_gbuffer",
     "frequency_encode",
     "frequency_encode_backward",
     "hash_encode",
@@ -74,6 +77,7 @@ __all__: list[str] = [
     "instruction_set",
     "interpolate",
     "interpolate_backward",
+    "light_gbuffer",
     "lights",
     "log1p_unit",
     "march",
@@ -110,6 +114,7 @@ __all__: list[str] = [
     "principled_values_backward",
     "rasterize",
     "rasterize_backward",
+    "rasterize_depth",
     "read_vdb",
     "sample",
     "sample_backward",
@@ -125,6 +130,7 @@ __all__: list[str] = [
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "shadow_lookup",
     "silhouettes",
     "sobol_words",
     "sparse_adam",
@@ -132,10 +138,14 @@ __all__: list[str] = [
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
+    "ssao",
+    "ssao_backward",
     "ssim",
     "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
+    "tone_map",
+    "tone_map_backward",
     "total_variation",
     "total_variation_backward",
     "trace_light",
@@ -1392,6 +1402,25 @@ def blend_samples(
     (R, C): the sum of weight times values (M, C) over the samples of each ray.
     """
 
+def bloom(
+    color: numpy.ndarray,
+    threshold: typing.SupportsFloat | typing.SupportsIndex,
+    weights: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None: ...
+def bloom_backward(
+    color: numpy.ndarray,
+    threshold: typing.SupportsFloat | typing.SupportsIndex,
+    weights: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_color: numpy.ndarray,
+    d_weights: numpy.ndarray,
+    d_threshold: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_color, d_weights and d_threshold (1,).
+    """
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -1526,6 +1555,25 @@ def expm1(x: numpy.ndarray) -> numpy.ndarray:
     The portable exp(x) - 1 on a flat array.
     """
 
+def fill_gbuffer(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    camera: tuple[typing.Any, ...],
+    shape: numpy.ndarray,
+    primitive: numpy.ndarray,
+    gbuffer: collections.abc.Mapping[str, numpy.ndarray],
+) -> None:
+    """
+    Writes the arrays of gbuffer; shape (N,) counts instances of meshes, then spheres; -1 sees nothing.
+    """
+
 def frequency_encode(
     points: numpy.ndarray,
     octaves: typing.SupportsInt | typing.SupportsIndex,
@@ -1583,6 +1631,28 @@ def interpolate_backward(
 ) -> None:
     """
     Adds to d_attributes, writes d_barycentrics where a face is seen.
+    """
+
+def light_gbuffer(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    eye: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    gbuffer: collections.abc.Mapping[str, numpy.ndarray],
+    wi: numpy.ndarray,
+    irradiance: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Adds to out (N, 3).
     """
 
 def log1p_unit(x: numpy.ndarray) -> numpy.ndarray:
@@ -1917,9 +1987,10 @@ def rasterize(
     depth: numpy.ndarray,
     stencil: typing.Any,
     overdraw: typing.Any,
+    behind: numpy.ndarray | None = None,
 ) -> None:
     """
-    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None.
+    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; only what lies behind `behind` (H, W) unless None.
     """
 
 def rasterize_backward(
@@ -1932,6 +2003,17 @@ def rasterize_backward(
 ) -> None:
     """
     Adds to d_positions.
+    """
+
+def rasterize_depth(
+    positions: numpy.ndarray,
+    faces: numpy.ndarray,
+    near: typing.SupportsFloat | typing.SupportsIndex,
+    far: typing.SupportsFloat | typing.SupportsIndex,
+    depth: numpy.ndarray,
+) -> None:
+    """
+    Draws onto depth (H, W) alone.
     """
 
 def read_vdb(
@@ -2062,6 +2144,17 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def shadow_lookup(
+    depths: numpy.ndarray,
+    pixels_from_world: numpy.ndarray,
+    radius: typing.SupportsInt | typing.SupportsIndex,
+    depth_bias: typing.SupportsFloat | typing.SupportsIndex,
+    normal_bias: typing.SupportsFloat | typing.SupportsIndex,
+    texel: typing.SupportsFloat | typing.SupportsIndex,
+    points: numpy.ndarray,
+    normals: numpy.ndarray,
+    visibility: numpy.ndarray,
+) -> None: ...
 def silhouettes(
     positions: numpy.ndarray, ends: numpy.ndarray, opposite: numpy.ndarray, out: numpy.ndarray
 ) -> None: ...
@@ -2118,6 +2211,35 @@ def square_to_disk(u2: numpy.ndarray) -> numpy.ndarray:
     Uniform points (N, 2) of the unit disk from uniform u2 (N, 2).
     """
 
+def ssao(
+    inverse_depth: numpy.ndarray,
+    normals: numpy.ndarray,
+    intrinsics: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+    settings: numpy.ndarray,
+    samples: typing.SupportsInt | typing.SupportsIndex,
+    out: numpy.ndarray,
+) -> None:
+    """
+    settings: (radius, falloff, bias, distribution, strength).
+    """
+
+def ssao_backward(
+    inverse_depth: numpy.ndarray,
+    normals: numpy.ndarray,
+    intrinsics: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+    settings: numpy.ndarray,
+    samples: typing.SupportsInt | typing.SupportsIndex,
+    d_out: numpy.ndarray,
+    d_settings: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_settings.
+    """
+
 def ssim(x: numpy.ndarray, y: numpy.ndarray) -> float:
     """
     Mean structural similarity of two pictures (H, W, C) in 0 .. 1.
@@ -2134,6 +2256,24 @@ def ssim_backward(
     """
 
 def thread_count() -> int: ...
+def tone_map(
+    color: numpy.ndarray,
+    curve: typing.SupportsInt | typing.SupportsIndex,
+    params: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None: ...
+def tone_map_backward(
+    color: numpy.ndarray,
+    curve: typing.SupportsInt | typing.SupportsIndex,
+    params: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_color: numpy.ndarray,
+    d_params: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_color and d_params.
+    """
+
 def total_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
     """
     Squared total variation of values (N, C) over pairs of active neighbors.

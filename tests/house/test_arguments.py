@@ -19,8 +19,10 @@ finally:
 
 DESCRIBED = (
     "photograd.capture",
+    "photograd.caustics",
     "photograd.fields",
     "photograd.fitting",
+    "photograd.frame",
     "photograd.raster",
     "photograd.representation",
     "photograd.splats",

@@ -16,11 +16,12 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("light", "field", "splat", "optim", "raster", "vector"),
     ("scene",),
     ("render",),
+    ("frame",),
     ("bindings",),
 )
 RANK = {module: rank for rank, group in enumerate(ORDER) for module in group}
 # Kernels are the vectorized twins of loops in these modules; only they may call them.
-KERNEL_USERS = {"kernels", "texture", "network", "render", "bindings", "tests", "bench"}
+KERNEL_USERS = {"kernels", "texture", "network", "raster", "render", "bindings", "tests", "bench"}
 # What a kernel file may see: plain values and lanes, the layout of a grid, the tiles of splats.
 KERNEL_SOURCES = {"kernels", "core", "ops", "grid", "splat"}
 

@@ -15,6 +15,7 @@ from photograd.raster import (
 )
 from photograd.vector import Drawing, Rendering, Shape, Stroke, Subpath
 
+from support.frame_workload import frames
 from support.network_workload import networks
 
 
@@ -37,4 +38,4 @@ def drawings() -> None:
     rendering.coverage_backward(1, rendering.coverage(1))
 
 
-LATER = (networks, rasters, drawings)
+LATER = (networks, rasters, frames, drawings)

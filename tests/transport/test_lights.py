@@ -189,7 +189,7 @@ def powers(scene: Scene) -> Any:
     """Of the lights of `LIGHTS["all"]`, by formulas of their own; then of what emits as a shape."""
     lo, hi = np.full(3, np.inf), np.full(3, -np.inf)
     tracer = PathTracer(scene)
-    for shape in tracer._shapes:
+    for shape in tracer.core_shapes:
         if isinstance(shape, MeshShape):
             low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
         else:

@@ -10,6 +10,7 @@
 
 #include "diffusion_op_list.h"
 #include "facet_op_list.h"
+#include "frame_op_list.h"
 #include "input_group.h"
 #include "photograd/core/params.h"
 #include "photograd/ops/bilinear.h"
@@ -262,6 +263,7 @@ using Ops = TypeList<
     PrincipledOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
     SdfCapsuleOp, SmoothUnionOp, ToShapeOp, RaySphereOp<false>, RaySphereOp<true>, DipoleOp,
     NormalizedDiffusionOp<DiffusionFit::searchlight>, NormalizedDiffusionOp<DiffusionFit::diffuse>,
-    NormalizedDiffusionOp<DiffusionFit::diffuse_free_path>, ScreenPointOp>;
+    NormalizedDiffusionOp<DiffusionFit::diffuse_free_path>, ScreenPointOp, ReinhardOp, AcesFitOp,
+    AgxContrastOp<true>, AgxContrastOp<false>, AgxColorOp, ObscuranceOp>;
 
 }  // namespace photograd

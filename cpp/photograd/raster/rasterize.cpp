@@ -1,8 +1,10 @@
 #include "photograd/raster/rasterize.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
+#include "kernels/kernels.h"
 #include "photograd/core/parallel.h"
 #include "photograd/raster/owner_sums.h"
 
@@ -20,6 +22,7 @@ bool is_culled(Cull cull, bool front) { return cull == (front ? Cull::front : Cu
 bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out,
               std::size_t pixel) {
     if (!(z >= rules.near && z <= rules.far)) return false;
+    if (out.behind && !(z > out.behind[pixel])) return false;
     if (out.overdraw) ++out.overdraw[pixel];
     const StencilRules& stencil = rules.stencil;
     if (out.stencil && !stencil.allows(out.stencil[pixel])) {
@@ -31,6 +34,44 @@ bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out
     return nearer;
 }
 
+/// Pixels [x0, x1) of a row outside of which an edge leaves nothing; one more on either side than
+/// rounding could ask for.
+void narrow(const ScreenTriangle& triangle, double y, int& x0, int& x1) {
+    for (int i = 0; i < 3; ++i) {
+        const Vec3<double>& line = triangle.edges.line[i];
+        const double at = -(line.y * y + line.z) / line.x;  // where the edge crosses the row
+        if (!(at > -1e9 && at < 1e9)) continue;
+        if (line.x > 0) x0 = std::max(x0, static_cast<int>(std::floor(at)) - 2);
+        if (line.x < 0) x1 = std::min(x1, static_cast<int>(std::floor(at)) + 3);
+    }
+}
+
+/// What a depth buffer alone decides: by lanes.
+void draw_spans(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
+                const TileBounds& tile, int width, const VisibilityBuffers& out) {
+    DrawSpan span{};
+    for (int i = 0; i < 3; ++i) {
+        span.slope[i] = triangle.edges.line[i].x;
+        span.least[i] = triangle.least[i];
+    }
+    span.det = triangle.edges.det;
+    span.near = rules.near, span.far = rules.far;
+    span.number = number;
+    for (int y = std::max(tile.y0, triangle.y0); y < std::min(tile.y1, triangle.y1); ++y) {
+        const double center = y + 0.5;
+        span.x0 = std::max(tile.x0, triangle.x0), span.x1 = std::min(tile.x1, triangle.x1);
+        narrow(triangle, center, span.x0, span.x1);
+        if (span.x0 >= span.x1) continue;
+        for (int i = 0; i < 3; ++i)
+            span.offset[i] = triangle.edges.line[i].y * center + triangle.edges.line[i].z;
+        const std::int64_t row = std::int64_t{y} * width;
+        span.depth = out.depth + row;
+        span.face = out.face ? out.face + row : nullptr;
+        span.overdraw = out.overdraw ? out.overdraw + row : nullptr;
+        kernels().draw_span(span);
+    }
+}
+
 void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
                    const TileBounds& tile, int width, const VisibilityBuffers& out) {
     const int x0 = std::max(tile.x0, triangle.x0), x1 = std::min(tile.x1, triangle.x1);
@@ -40,7 +81,7 @@ void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const Fr
             const double z = triangle.depth_at(x + 0.5, y + 0.5);
             const std::size_t pixel = row + static_cast<std::size_t>(x);
             if (z < 0 || !survives(rules, z, out, pixel)) continue;
-            out.face[pixel] = number;
+            if (out.face) out.face[pixel] = number;
             if (rules.depth_write) out.depth[pixel] = z;
         }
     }
@@ -68,6 +109,9 @@ void fill_barycentrics(const PreparedTriangles& triangles, std::int64_t face_cou
 
 void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const VisibilityBuffers& out) {
     const PreparedTriangles triangles(mesh, rules.near, Reach::centers);
+    const bool by_depth_alone =
+        rules.depth == Compare::less && rules.depth_write && !out.stencil && !out.behind;
+    const auto draw = by_depth_alone ? &draw_spans : &draw_triangle;
     parallel_for(std::int64_t{triangles.columns()} * triangles.rows(), [&](std::int64_t number) {
         const int x = static_cast<int>(number % triangles.columns()) * raster_tile;
         const int y = static_cast<int>(number / triangles.columns()) * raster_tile;
@@ -76,10 +120,10 @@ void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const Visibil
         for (const std::uint32_t face : triangles.in_tile(static_cast<std::size_t>(number))) {
             const ScreenTriangle& triangle = triangles.triangle(face);
             if (!is_culled(rules.cull, triangle.front))
-                draw_triangle(triangle, out.first_face + static_cast<std::int32_t>(face), rules,
-                              tile, mesh.width, out);
+                draw(triangle, out.first_face + static_cast<std::int32_t>(face), rules, tile,
+                     mesh.width, out);
         }
-        fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
+        if (out.face) fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
     });
 }
 

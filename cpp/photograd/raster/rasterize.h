@@ -13,12 +13,13 @@ namespace photograd {
 
 /// The buffers, (H, W) each; drawn onto, so that several meshes may follow one another.
 struct VisibilityBuffers {
-    std::int32_t* face;       // -1 where nothing is seen
+    std::int32_t* face;       // -1 where nothing is seen; null with `barycentrics` for depth alone
     double* barycentrics;     // (H, W, 2): weights of the second and third corner
     double* depth;            // z in the camera's frame; infinite where nothing is seen
     std::uint8_t* stencil;    // null without a stencil buffer
     std::int32_t first_face;  // added to the numbers of faces
     std::int32_t* overdraw;   // null, or how many fragments lay within [near, far]
+    const double* behind;     // null, or depths (H, W): only what lies further away is drawn
 };
 
 void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const VisibilityBuffers& out);

@@ -78,6 +78,7 @@ def rasterize(
     *,
     onto: Visibility | None = None,
     first_face: int = 0,
+    behind: FloatArray | None = None,
 ) -> Visibility:
     """Draw triangles: which of them the center of each pixel sees.
 
@@ -92,6 +93,8 @@ def rasterize(
         options: the tests of a fragment; None takes the defaults.
         onto: buffers to go on with, which are copied; None starts with cleared ones.
         first_face: is added to the numbers of the faces, for a second mesh in the same buffers.
+        behind: (H, W) depths in meters; only what lies further away is drawn. With the depths of
+            one layer it finds the next: depth peeling [Everitt2001]. None draws all.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays of other types or shapes, positions that are not
@@ -102,6 +105,8 @@ def rasterize(
     call = Arguments("rasterize", np.float64)
     positions, faces = mesh_arrays(call, positions, faces)
     needs_stencil = options.stencil is not None
+    if behind is not None:
+        behind = call.array("behind", behind, tuple(size), finite=False)
     if onto is None:
         out = Visibility.cleared(*size, stencil=0 if needs_stencil else None)
     else:
@@ -122,6 +127,7 @@ def rasterize(
         out.depth,
         out.stencil if needs_stencil else None,
         out.overdraw,
+        behind,
     )
     return out
 

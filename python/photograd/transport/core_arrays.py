@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd.capture.camera import Camera
 from photograd.lights import (
     EnvironmentMap,
     Light,
@@ -34,6 +35,16 @@ Use = tuple[int, int, int, int, float, float]
 BentNormals = tuple[Array, int, int]
 BRUSHES = ("anisotropy", "anisotropic")
 """Parameters by which a model looks different when its frame is turned."""
+
+
+def camera_numbers(camera: Camera) -> tuple[Any, ...]:
+    """Width, height, intrinsics in pixels, and the rows of world_from_camera.
+
+    Args:
+        camera: of a picture.
+    """
+    pose = camera.world_from_camera[:3].tolist()
+    return camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose
 
 
 def instances_of(meshes: Sequence[MeshShape]) -> tuple[Array, Array]:

@@ -19,6 +19,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
+    camera_numbers,
     cutoffs_of,
     glows_of,
     instances_of,
@@ -54,6 +55,8 @@ class PathTracer:
             where a light has become much stronger. Places and directions of lights are fixed;
             "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
         incomplete: {name: what is missing} of those params whose derivative is not handed out.
+        core_shapes: the scene's shapes and its lights with a surface, in the core's order.
+        core_owner: (S,) which of them each shape of the core is; a mesh has one for each instance.
 
     Example:
         >>> room = photograd.PathTracer(photograd.builtin_scene("cornell-box", 8))
@@ -79,9 +82,8 @@ class PathTracer:
         remedy = "read_scene reads a file; default_scene makes one of what read_model reads"
         require_instance("PathTracer", "scene", scene, Scene, remedy)
         self.dtype = np.dtype(dtype)
-        if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            expected = "float32 or float64"
-            raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
+        if self.dtype.char not in "fd":
+            raise DtypeError(message("PathTracer", "dtype", "float32 or float64", self.dtype))
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
         self._lights = packed_lights(scene)
@@ -94,16 +96,16 @@ class PathTracer:
             *((name, s, len(names)) for name, s in light_shapes(scene).items()),
         ]
         placed.sort(key=lambda entry: ORDER.index(type(entry[1])))
-        self._shapes: list[Shape] = [shape for _, shape, _ in placed]
+        self.core_shapes: list[Shape] = [shape for _, shape, _ in placed]
         self._emissions = [name for name, _, _ in placed]
-        meshes = [shape for shape in self._shapes if isinstance(shape, MeshShape)]
-        spheres = [shape for shape in self._shapes if isinstance(shape, SphereShape)]
-        sdfs = [shape.ready.parts for shape in self._shapes if isinstance(shape, SdfShape)]
+        meshes = [shape for shape in self.core_shapes if isinstance(shape, MeshShape)]
+        spheres = [shape for shape in self.core_shapes if isinstance(shape, SphereShape)]
+        sdfs = [shape.ready.parts for shape in self.core_shapes if isinstance(shape, SdfShape)]
         numbers, matrices = instances_of(meshes)
         # What the core counts as a shape is an instance; `_owner` says of which of ours.
-        self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
+        self.core_owner = np.concatenate([numbers, np.arange(len(meshes), len(self.core_shapes))])
         materials = np.array([material for _, _, material in placed], np.int32)
-        emission = np.array([mean_emission(scene, s) for s in self._shapes], np.float64)
+        emission = np.array([mean_emission(scene, s) for s in self.core_shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self.params: dict[str, Array] = self._initial_params()
         self._param_shapes = {name: value.shape for name, value in self.params.items()}
@@ -114,13 +116,13 @@ class PathTracer:
             spheres=np.array(balls, np.float32).reshape(-1, 4),
             sdfs=sdfs,
             **closing_arrays(meshes, spheres),
-            material=materials[self._owner],
-            emission=emission[self._owner],
+            material=materials[self.core_owner],
+            emission=emission[self.core_owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],
         )
-        glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
+        glows = glows_of(scene, [self.core_shapes[owner] for owner in self.core_owner])
         self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
-        media = self._media.core_arguments(self._shapes, self._owner)
+        media = self._media.core_arguments(self.core_shapes, self.core_owner)
         if media is not None:
             self._geometry.set_media(**media)
         marked = [m.model + "+alpha" * m.has_opacity for m in scene.materials.values()]
@@ -133,7 +135,7 @@ class PathTracer:
                 params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
         for name, texture in self.scene.textures.items():
             params[f"textures.{name}"] = texture.values
-        for name, shape in zip(self._emissions, self._shapes, strict=True):
+        for name, shape in zip(self._emissions, self.core_shapes, strict=True):
             if shape.emission.any() or name.startswith("lights."):
                 params[name] = shape.emission
         for light in self._lights:
@@ -191,7 +193,7 @@ class PathTracer:
         texels = None if sampling_params is None else self._texels(sampling_params)
         media = None if sampling_params is None else self._media.rows(sampling_params, self.dtype)
         _core.trace_paths(
-            **self._arguments(view),
+            **self.core_arguments(view),
             sampling_parameters=other,
             sampling_textures=texels,
             sampling_media=media,
@@ -254,11 +256,11 @@ class PathTracer:
 
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
         """What `backward` of the core makes of `view` and `given`, by name, for a `function`."""
-        arguments = self._arguments(view)
+        arguments = self.core_arguments(view)
         gradient = {name: np.zeros_like(value) for name, value in blocks_of(arguments).items()}
         backward(**arguments, **given, gradient=gradient)
-        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
-        np.add.at(d_shapes, self._owner, gradient["emission"])
+        d_shapes = np.zeros((len(self.core_shapes), 3), self.dtype)
+        np.add.at(d_shapes, self.core_owner, gradient["emission"])
         gradients = dict(zip(self._emissions, d_shapes, strict=True))
         for i, name in enumerate(self.scene.textures):
             gradients[f"textures.{name}"] = gradient[f"textures.{i}"]
@@ -297,7 +299,8 @@ class PathTracer:
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))
-        _core.ambient_occlusion(self._geometry, _numbers(view), radius, seed, sums.count, spp, free)
+        numbers = camera_numbers(view)
+        _core.ambient_occlusion(self._geometry, numbers, radius, seed, sums.count, spp, free)
         sums.radiance += free[..., None]
         sums.squares += free[..., None]  # 0 and 1 are their own squares
         sums.count += spp
@@ -310,9 +313,8 @@ class PathTracer:
         It is `sample` of `pixel`, row * width + column, with `seed` and `options`, in float64.
         """
         arguments = self.wide_arguments()
-        found: list[dict[str, Any]] = _core.trace_path(
-            **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
-        )
+        given = {**arguments, "options": options.numbers(seed)}
+        found: list[dict[str, Any]] = _core.trace_path(**given, pixel=pixel, sample=sample)
         return found
 
     def _material_row(self, params: dict[str, Array]) -> Array:
@@ -339,7 +341,7 @@ class PathTracer:
         `params` is what to say instead of the tracer's own; `camera` None takes the scene's.
         """
         given = self.params if params is None else params
-        arguments = self._arguments(self.scene.camera if camera is None else camera, given)
+        arguments = self.core_arguments(self.scene.camera if camera is None else camera, given)
         return {**arguments, **self._wide(given), "media": self._media.rows(given, np.float64)}
 
     def wide_changes(self, step: dict[str, Array]) -> dict[str, Any]:
@@ -358,41 +360,38 @@ class PathTracer:
         shining = np.array([params.get(name, black) for name in self._emissions], self.dtype)
         return {
             "parameters": self._material_row(params),
-            "emission": shining[self._owner],
+            "emission": shining[self.core_owner],
             "textures": self._texels(params),
         }
 
-    def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
+    def core_arguments(
+        self, camera: Camera, params: dict[str, Array] | None = None
+    ) -> dict[str, Any]:
+        """The scene in the tracer's dtype, with a `camera`; `params` None takes its own."""
         given = self.params if params is None else params
         self._check_params(given)
         lens = self.scene.lens.radius, self.scene.lens.focus
-        shutter, motion = self.scene.shutter, ()
-        if shutter is not None and camera is self.scene.camera:
-            motion = tuple(part.tolist() for part in shutter.motion(camera))
+        motion: tuple[Any, ...] = ()
+        if self.scene.shutter is not None and camera is self.scene.camera:
+            motion = tuple(part.tolist() for part in self.scene.shutter.motion(camera))
         return {
             "geometry": self._geometry,
             "models": self._models,
             **self._surfaces(given),
             "lights": [light.row(given, self.dtype) for light in self._lights],
             "media": self._media.rows(given, self.dtype),
-            "camera": (*_numbers(camera), *lens, *motion),
+            "camera": (*camera_numbers(camera), *lens, *motion),
         }
 
     def _check_params(self, given: dict[str, Array]) -> None:
         """Raises RangeError or ShapeError where names or shapes are not those of the scene."""
         known = self._param_shapes
         for name in sorted(given.keys() - known.keys() - set(self._emissions)):
-            near = choose_from(name, known)
-            got = f"{name!r}"
-            raise RangeError(message("PathTracer", "params", "names of the scene", got, near))
+            expected, near = "names of the scene", choose_from(name, known)
+            raise RangeError(message("PathTracer", "params", expected, f"{name!r}", near))
         for name in sorted(known.keys() - given.keys()):
             raise RangeError(message("PathTracer", f"params[{name!r}]", "an array", "none"))
         for name, shape in known.items():
             if np.shape(given[name]) != shape:
                 got = f"{np.shape(given[name])}"
                 raise ShapeError(message("PathTracer", f"params[{name!r}]", f"shape {shape}", got))
-
-
-def _numbers(camera: Camera) -> tuple[Any, ...]:
-    pose = camera.world_from_camera[:3].tolist()
-    return camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose

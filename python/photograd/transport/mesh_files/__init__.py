@@ -13,6 +13,7 @@ from photograd.transport.mesh_files.gltf_save import save_gltf
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import SUFFIXES, read_model
+from photograd.transport.mesh_files.stl import write_stl
 from photograd.transport.mesh_files.studio import STUDIO, default_scene
 
 __all__ = [
@@ -25,4 +26,5 @@ __all__ = [
     "read_model",
     "read_textured_mesh",
     "save_gltf",
+    "write_stl",
 ]

@@ -1,4 +1,4 @@
-"""Triangles in .stl files: 50 bytes each, or a text with three lines "vertex" for each."""
+"""Triangles in .stl files: 50 bytes each, or, to be read alone, a text of lines "vertex"."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import re
 from pathlib import Path
 
 import numpy as np
+from photograd_course.atomic_io import atomic_write
 from photograd_course.input_files import read_file
 
+from photograd._arrays import Arguments
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
@@ -55,3 +57,29 @@ def _text(path: Path, data: bytes) -> Array:
         raise IoError(message(NAME, f"{path}", "three corners for each triangle", len(rows)))
     with np.errstate(over="ignore"):
         return np.array(rows, np.float64).reshape(-1, 3).astype(np.float32)
+
+
+def write_stl(path: Path, vertices: Array, faces: Array) -> None:
+    """Write triangles as a binary .stl file, atomically.
+
+    Args:
+        path: of the file.
+        vertices: (V, 3). The format has no unit; 3D printers take millimeters.
+        faces: (F, 3) vertex numbers, counter-clockwise seen from outside.
+
+    Raises:
+        ShapeError, RangeError: arrays of other shapes, numbers that are not finite or name no
+            vertex.
+        IoError: the file cannot be written.
+    """
+    call = Arguments("write_stl", np.float32)
+    vertices = call.array("vertices", vertices, ("V", 3))
+    last = len(vertices) - 1
+    faces = call.array("faces", faces, ("F", 3), dtype=np.int64, low=0, high=last)
+    rows = np.zeros(len(faces), _TRIANGLE)
+    corners = rows["corners"] = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.sqrt(np.square(normals).sum(axis=1, keepdims=True))
+    rows["normal"] = normals / np.where(length > 0, length, 1.0)
+    header = bytes(80) + len(faces).to_bytes(4, "little")
+    atomic_write(path, header + rows.tobytes())

@@ -15,6 +15,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("fit", "Recover a scene from photographs."),
     ("render", "Render a recovered scene, for example as a turntable."),
     ("trace", "Path trace a described scene."),
+    ("frame", "Draw a scene as a real-time engine does: rasterized, lit pass by pass."),
     ("bake-ao", "Bake how much of the sky each texel of a mesh sees."),
     ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
     ("vectorize", "Draw a picture with curves, as SVG."),

@@ -1,0 +1,104 @@
+// The G-buffer of a scene, and its lighting; photograd.frame is the typed face.
+#include "camera_args.h"
+#include "module.h"
+#include "path_args.h"
+#include "photograd/frame/gbuffer.h"
+#include "scene_calls.h"
+
+namespace photograd {
+namespace {
+
+/// {name: array} of all of a G-buffer; rows (N, P), P of 0 for none.
+using GBufferArrays = std::map<std::string, py::array>;
+
+py::array& gbuffer_array(GBufferArrays& arrays, const char* name) {
+    const auto found = arrays.find(name);
+    if (found == arrays.end())
+        fail(ErrorKind::shape, "gbuffer", name, "an array of this name", "none");
+    return found->second;
+}
+
+template <class R>
+GBuffer<R> gbuffer_of(ArrayArgs& args, GBufferArrays& arrays) {
+    const auto vectors = [&](const char* name) {
+        return args.out<R>(name, gbuffer_array(arrays, name), "N 3");
+    };
+    GBuffer<R> out{};
+    out.material = args.out<std::int32_t>("material", gbuffer_array(arrays, "material"), "N");
+    out.position = vectors("position");
+    out.normal = vectors("normal");
+    out.shading = vectors("shading");
+    out.tangent = vectors("tangent");
+    out.emission = vectors("emission");
+    out.alpha = args.out<R>("alpha", gbuffer_array(arrays, "alpha"), "N");
+    out.rows = args.out<R>("rows", gbuffer_array(arrays, "rows"), "N Q");
+    out.row_size = static_cast<int>(args.size("Q"));
+    if (out.row_size > max_parameters)
+        args.range("rows", "at most " + std::to_string(max_parameters) + " columns",
+                   std::to_string(out.row_size));
+    return out;
+}
+
+void fill(const SceneRows& rows, const py::tuple& camera_numbers, const py::array& shape,
+          const py::array& primitive, GBufferArrays gbuffer) {
+    dispatch_real("fill_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const SceneNumbers<R> numbers(args, rows);
+        const Pinhole camera = pinhole(camera_numbers);
+        const std::int32_t* s = args.in<std::int32_t>("shape", shape, "N");
+        const std::int32_t* p = args.in<std::int32_t>("primitive", primitive, "N");
+        if (args.size("N") != std::int64_t{camera.width} * camera.height)
+            args.range("shape", "one number a pixel", std::to_string(args.size("N")));
+        const Bvh& bvh = rows.geometry.bvh;
+        for (std::int64_t i = 0; i < args.size("N"); ++i) {
+            if (s[i] < 0) continue;
+            const bool known = s[i] < static_cast<std::int32_t>(bvh.first_solid());
+            const bool sphere = known && s[i] >= static_cast<std::int32_t>(bvh.sphere_instance());
+            const std::int64_t end = sphere ? static_cast<std::int64_t>(bvh.spheres().size())
+                                     : known
+                                         ? static_cast<std::int64_t>(bvh.mesh_of(s[i]).face_count())
+                                         : 0;
+            if (p[i] < 0 || p[i] >= end)
+                args.range("primitive", "a primitive of shape " + std::to_string(s[i]),
+                           std::to_string(p[i]));
+        }
+        const GBuffer<R> out = gbuffer_of<R>(args, gbuffer);
+        const py::gil_scoped_release release;
+        fill_gbuffer(numbers.scene, camera, s, p, out);
+    });
+}
+
+void light(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
+           const py::array& wi, const py::array& irradiance, py::array out) {
+    dispatch_real("light_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const SceneNumbers<R> numbers(args, rows);
+        const GBuffer<R> in = gbuffer_of<R>(args, gbuffer);
+        const R* direction = args.in<R>("wi", wi, "N 3");
+        const R* arriving = args.in<R>("irradiance", irradiance, "N 3");
+        R* to = args.out<R>("out", out, "N 3");
+        const std::int64_t count = args.size("N");
+        for (std::int64_t i = 0; i < count; ++i)
+            if (in.material[i] >= static_cast<std::int32_t>(numbers.materials.size()))
+                args.range("material", "numbers below " + std::to_string(numbers.materials.size()),
+                           std::to_string(in.material[i]));
+        const Vec3<R> from{R(eye[0]), R(eye[1]), R(eye[2])};
+        const py::gil_scoped_release release;
+        light_gbuffer(numbers.scene, from, count, in, direction, arriving, to);
+    });
+}
+
+}  // namespace
+
+void bind_gbuffer(py::module_& m) {
+    with_scene_names([&](auto... scene) {
+        m.def("fill_gbuffer", of_scene(&fill), scene..., py::arg("camera"), py::arg("shape"),
+              py::arg("primitive"), py::arg("gbuffer"),
+              "Writes the arrays of gbuffer; shape (N,) counts instances of meshes, then spheres; "
+              "-1 sees nothing.");
+        m.def("light_gbuffer", of_scene(&light), scene..., py::arg("eye"), py::arg("gbuffer"),
+              py::arg("wi"), py::arg("irradiance"), py::arg("out"), "Adds to out (N, 3).");
+    });
+}
+
+}  // namespace photograd

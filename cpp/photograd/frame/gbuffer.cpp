@@ -1,0 +1,133 @@
+#include "photograd/frame/gbuffer.h"
+
+#include "photograd/frame/chunk_sums.h"
+#include "photograd/render/path/lane.h"
+
+namespace photograd {
+namespace {
+
+template <class R>
+void put(R* rows, std::int64_t i, const Vec3<R>& v) {
+    if (rows)
+        for (int k = 0; k < 3; ++k) rows[3 * i + k] = v[k];
+}
+template <class R>
+Vec3<R> vector_at(const R* rows, std::int64_t i) {
+    return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
+}
+
+/// Where the ray meets a sphere, or passes it most closely: its triangles lie within it.
+template <class R>
+R distance_to(const Ray<R>& ray, const Sphere& sphere) {
+    const auto chord = SphereChord<R>::of(ray, sphere.center<R>(), R(sphere.radius), R(1));
+    const R half = chord.half_squared > R(0) ? std::sqrt(chord.half_squared) : R(0);
+    return chord.middle - half > R(0) ? chord.middle - half : chord.middle + half;
+}
+
+template <Real R>
+void fill_pixel(const PathScene<R>& scene, const Ray<R>& ray, const RayCone<R>& cone,
+                std::int32_t shape, std::int32_t primitive, std::int64_t i, const GBuffer<R>& out) {
+    const PathGeometry& geometry = *scene.geometry;
+    const Bvh& bvh = geometry.bvh;
+    const bool sphere = shape >= bvh.sphere_instance();
+    const R t = sphere ? distance_to(ray, bvh.sphere(primitive, 0)) : R(0);
+    const SurfaceHit<R> hit = surface_hit(
+        geometry, ray, sphere ? static_cast<std::int32_t>(bvh.sphere_instance()) : shape, primitive,
+        float(t));
+    Footprint<R> footprint;
+    if (!sphere && geometry.textures.any_mips())
+        footprint = cone.footprint(bvh, hit, ray.direction, length(hit.position - ray.origin));
+    HitMaterial<R> looked_up;
+    looked_up.look_up(scene, hit, footprint);
+    const Material<R>& material = looked_up.eval();
+    const SurfaceSide<R> side(hit, -ray.direction, material.transmits());
+    out.material[i] = static_cast<std::int32_t>(looked_up.number());
+    put(out.position, i, hit.position);
+    put(out.normal, i, side.normal);
+    put(out.shading, i, side.frame.normal);
+    put(out.tangent, i, dot(hit.along, hit.along) > R(0) ? side.frame.tangent : Vec3<R>(R(0)));
+    const bool front = -dot(hit.outside, ray.direction) > R(0);
+    put(out.emission, i, front ? scene.emitted(hit.shape, hit.uv) : Vec3<R>(R(0)));
+    const double cutoff = geometry.textures.cutoff(looked_up.number());
+    out.alpha[i] = cutoff < 0 ? material.alpha : R(double(material.alpha) >= cutoff ? 1 : 0);
+    if (out.row_size == 0) return;
+    R row[max_parameters] = {};
+    material.get(row);
+    std::copy_n(row, out.row_size, out.rows + i * out.row_size);
+}
+
+/// The side of the surface as `fill_pixel` left it.
+template <Real R>
+SurfaceSide<R> side_of(const GBuffer<R>& in, std::int64_t i, const Vec3<R>& viewer) {
+    SurfaceHit<R> hit;
+    hit.outside = vector_at(in.normal, i);
+    hit.shading = vector_at(in.shading, i);
+    hit.along = vector_at(in.tangent, i);
+    return {hit, viewer, true};
+}
+
+template <Real R>
+Vec3<R> reflected(const Material<R>& material, const SurfaceSide<R>& side, const Vec3<R>& wi) {
+    const Vec3<R> local = side.frame.to_local(wi);
+    if (material.is_specular() || !side.agrees(wi, local)) return Vec3<R>(R(0));
+    if (!(side.wo.z * local.z > R(0)) && !material.transmits()) return Vec3<R>(R(0));
+    return material.f(side.wo, local) * std::abs(local.z);
+}
+
+}  // namespace
+
+template <Real R>
+void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const std::int32_t* shape,
+                  const std::int32_t* primitive, const GBuffer<R>& out) {
+    const RayCone<R> cone{R(0), R(2 / (camera.fx + camera.fy))};
+    parallel_for(camera.height, [&](std::int64_t y) {
+        for (int x = 0; x < camera.width; ++x) {
+            const std::int64_t i = y * camera.width + x;
+            if (shape[i] >= 0) {
+                fill_pixel(scene, camera.ray(R(x) + R(0.5), R(y) + R(0.5)), cone, shape[i],
+                           primitive[i], i, out);
+                continue;
+            }
+            out.material[i] = -1;
+            for (R* rows : {out.position, out.normal, out.shading, out.tangent, out.emission})
+                put(rows, i, Vec3<R>(R(0)));
+            out.alpha[i] = R(0);
+            std::fill_n(out.rows + i * out.row_size, out.row_size, R(0));
+        }
+    });
+}
+
+template <Real R>
+void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                   const GBuffer<R>& in, const R* wi, const R* irradiance, R* out) {
+    for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
+        for (std::int64_t i = first; i < last; ++i) {
+            const Vec3<R> arriving = vector_at(irradiance, i);
+            if (in.material[i] < 0 ||
+                !(arriving.x != R(0) || arriving.y != R(0) || arriving.z != R(0)))
+                continue;
+            const SurfaceSide<R> side = side_of(in, i, normalize(eye - vector_at(in.position, i)));
+            const Material<R>& shared = scene.materials[static_cast<std::size_t>(in.material[i])];
+            Vec3<R> light;
+            if (in.row_size == 0) {
+                light = reflected(shared, side, vector_at(wi, i));
+            } else {
+                Material<R> own = shared;
+                own.set(in.rows + i * in.row_size);
+                light = reflected(own, side, vector_at(wi, i));
+            }
+            put(out, i, vector_at(out, i) + light * arriving);
+        }
+    });
+}
+
+template void fill_gbuffer(const PathScene<float>&, const Pinhole&, const std::int32_t*,
+                           const std::int32_t*, const GBuffer<float>&);
+template void fill_gbuffer(const PathScene<double>&, const Pinhole&, const std::int32_t*,
+                           const std::int32_t*, const GBuffer<double>&);
+template void light_gbuffer(const PathScene<float>&, const Vec3<float>&, std::int64_t,
+                            const GBuffer<float>&, const float*, const float*, float*);
+template void light_gbuffer(const PathScene<double>&, const Vec3<double>&, std::int64_t,
+                            const GBuffer<double>&, const double*, const double*, double*);
+
+}  // namespace photograd

@@ -1,0 +1,34 @@
+// The G-buffer: what each pixel's surface is, kept to be lit later [Saito1990]; filled from a
+// visibility buffer by the path tracer's own hits, textures, normal maps and materials.
+#pragma once
+
+#include <cstdint>
+
+#include "photograd/camera/pinhole.h"
+#include "photograd/scene/path_scene.h"
+
+namespace photograd {
+
+/// One entry a pixel. `normal` is geometric, turned to the viewer unless light may pass; `shading`
+/// on the same side; `tangent` 0 where the material has no direction. A row holds the parameters of
+/// the material, textures included; without rows all pixels of a material have its own.
+template <class T>
+struct GBuffer {
+    std::int32_t* material;  // -1 where nothing is seen
+    T *position, *normal, *shading, *tangent, *emission, *alpha;
+    T* rows;
+    int row_size;  // 0 for none
+};
+
+/// `shape` and `primitive` (H, W), shape -1 where nothing is seen; all of `out` is written.
+template <Real R>
+void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const std::int32_t* shape,
+                  const std::int32_t* primitive, const GBuffer<R>& out);
+
+/// Light that arrives: from wi (N, 3), a unit vector of the world, as irradiance (N, 3) of what
+/// faces it. Adds f cos irradiance to out (N, 3); black rows cost nothing.
+template <Real R>
+void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                   const GBuffer<R>& in, const R* wi, const R* irradiance, R* out);
+
+}  // namespace photograd

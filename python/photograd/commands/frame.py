@@ -1,0 +1,192 @@
+"""`photograd frame`: a picture of a described scene by the passes of a real-time frame."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
+from photograd_course.color import srgb_encode
+
+from photograd._checks import typed
+from photograd.commands.shared import (
+    DepthOption,
+    SppOption,
+    check_output_name,
+    out_option,
+    use_threads,
+)
+from photograd.commands.trace import CameraOption, SceneArgument, SizeOption, load_scene
+from photograd.errors import RangeError, message
+from photograd.frame.against import Comparison, compare_with_paths
+from photograd.frame.graph import FrameResult
+from photograd.frame.options import FrameOptions, Shading, SkyVisibility
+from photograd.frame.panels import PANELS, panels
+from photograd.frame.pipeline import frame_graph
+from photograd.frame.scene import KINDS, FrameScene
+from photograd.frame.shadows import ShadowSettings
+from photograd.frame.tone_mapping import TONE_CURVES, ToneCurve
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.write import write_png, write_radiance
+from photograd.types import Array
+
+OutOption = Annotated[
+    Path, out_option("The picture: .exr, .hdr or .pfm of radiance, with a .png beside it, or .png.")
+]
+ShowOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--show",
+        metavar="BUFFER",
+        help=f"Write a buffer beside the picture, or 'all': {', '.join(PANELS)}. May be repeated.",
+    ),
+]
+AgainstOption = Annotated[
+    str, typer.Option("--against", help="'path' compares each kind of light with path tracing.")
+]
+ShadingOption = Annotated[str, typer.Option("--shading", help="deferred or forward.")]
+SkyOption = Annotated[
+    str,
+    typer.Option(
+        "--sky-visibility",
+        help="What hides the sky: occlusion (in screen space), shadow_maps, none.",
+    ),
+]
+PointsOption = Annotated[
+    int, typer.Option("--surface-points", min=0, help="Points that stand for surfaces that emit.")
+]
+DirectionsOption = Annotated[
+    int, typer.Option("--sky-directions", min=0, help="Directions that stand for a sky.")
+]
+ShadowSizeOption = Annotated[
+    int, typer.Option("--shadow-size", min=1, max=16384, help="Texels of a shadow map's edge.")
+]
+SupersamplingOption = Annotated[
+    int, typer.Option("--supersampling", min=1, max=16, help="Samples along a pixel's edge.")
+]
+ToneOption = Annotated[str, typer.Option("--tone-curve", help=f"none, {', '.join(TONE_CURVES)}.")]
+ExposureOption = Annotated[float, typer.Option("--exposure", help="In stops.")]
+BloomOption = Annotated[
+    float, typer.Option("--bloom", min=0.0, max=1.0, help="Part of the light that spreads.")
+]
+BLOOM_LEVELS = 6
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("frame")(frame)
+
+
+def frame(
+    scene: SceneArgument,
+    out: OutOption = Path("frame.png"),
+    size: SizeOption = 512,
+    camera: CameraOption = None,
+    show: ShowOption = None,
+    against: AgainstOption = "",
+    spp: SppOption = 256,
+    max_depth: DepthOption = 64,
+    shading: ShadingOption = "deferred",
+    sky_visibility: SkyOption = "occlusion",
+    surface_points: PointsOption = 16,
+    sky_directions: DirectionsOption = 32,
+    shadow_size: ShadowSizeOption = 1024,
+    supersampling: SupersamplingOption = 1,
+    tone_curve: ToneOption = "none",
+    exposure: ExposureOption = 0.0,
+    bloom: BloomOption = 0.0,
+    seed: SeedOption = 0,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Draw a scene as a real-time engine does: rasterized, lit pass by pass.
+
+    Prints the milliseconds of each pass. With --show, buffers are written beside the picture as
+    OUT.BUFFER.png. With --against path, each kind of light is path traced as well, OUT.against.png
+    shows frame, truth and five times their difference, and a row tells the root of the mean squared
+    difference of displayed colors.
+
+    Example: photograd frame cornell-box --show gbuffer --against path --out frame.png
+    """
+    use_threads(threads)
+    check_output_name("frame", out)
+    if against not in ("", "path"):
+        raise RangeError(message("frame", "--against", "'path'", against))
+    options = FrameOptions(
+        shading=typed("frame", "--shading", Shading, shading),
+        surface_points=surface_points,
+        sky_directions=sky_directions,
+        sky_visibility=typed("frame", "--sky-visibility", SkyVisibility, sky_visibility),
+        shadows=ShadowSettings(size=shadow_size),
+        supersampling=supersampling,
+        bloom_weights=(bloom / BLOOM_LEVELS,) * BLOOM_LEVELS if bloom else (),
+        tone_curve=_tone_curve(tone_curve),
+        exposure=exposure,
+    )
+    shown = _shown(show or [])
+    described, _ = load_scene(scene, size, camera)
+    ready = FrameScene(described)
+    if (ready.kind == KINDS.index("glass")).any():
+        note("surfaces that light passes through are left out; they cast shadows")
+    began = time.monotonic()
+    result = frame_graph(ready, options).run({"camera": described.camera})
+    seconds = time.monotonic() - began
+    _write(result, out)
+    for name in shown:
+        _write_sheet(out.with_suffix(f".{name}.png"), list(panels(result, name).values()))
+    report: dict[str, Any] = {"out": out, "triangles": len(ready.faces)}
+    report |= {f"{name} ms": round(spent, 1) for name, spent in result.milliseconds.items()}
+    report["seconds"] = round(seconds, 3)
+    if against:
+        rows = compare_with_paths(
+            described, options, spp=spp, seed=seed, max_depth=max_depth, report=note
+        )
+        report |= _written(rows, out)
+    emit(report, as_json=as_json, title="frame")
+
+
+def _tone_curve(name: str) -> ToneCurve | None:
+    if name == "none":
+        return None
+    curve: ToneCurve = typed("frame", "--tone-curve", ToneCurve, name)
+    return curve
+
+
+def _shown(names: list[str]) -> list[str]:
+    for name in names:
+        if name not in (*PANELS, "all"):
+            expected = f"all, or one of {', '.join(PANELS)}"
+            raise RangeError(message("frame", "--show", expected, name))
+    return list(PANELS) if "all" in names else list(dict.fromkeys(names))
+
+
+def _write(result: FrameResult, out: Path) -> None:
+    if out.suffix.lower() in LINEAR_SUFFIXES:
+        write_radiance(out, result["radiance"].astype(np.float32))
+    display = srgb_encode(np.clip(result["display"], 0.0, 1.0))
+    write_png(out.with_suffix(".png"), display.astype(np.float32))
+
+
+def _written(rows: list[Comparison], out: Path) -> dict[str, Any]:
+    """What is reported of comparisons, whose pictures are written."""
+    pictures = [picture for row in rows for picture in _beside(row)]
+    _write_sheet(out.with_suffix(".against.png"), pictures, columns=3)
+    report: dict[str, Any] = {f"{row.technique} rms": round(row.rms, 4) for row in rows}
+    return report | {f"{row.technique} noise": f"{100 * row.noise:.1f} %" for row in rows}
+
+
+def _beside(row: Comparison) -> list[Array]:
+    return [row.frame, row.truth, np.clip(5.0 * np.abs(row.frame - row.truth), 0.0, 1.0)]
+
+
+def _write_sheet(path: Path, pictures: list[Array], columns: int = 0) -> None:
+    """Pictures of one size side by side, in rows of `columns`; 0 for one row."""
+    columns = columns or len(pictures)
+    rows = [pictures[i : i + columns] for i in range(0, len(pictures), columns)]
+    blank = np.zeros_like(pictures[0])
+    sheet = np.vstack([np.hstack([*row, *[blank] * (columns - len(row))]) for row in rows])
+    write_png(path, sheet.astype(np.float32))

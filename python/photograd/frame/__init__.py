@@ -1,0 +1,61 @@
+"""The real-time frame: passes over a rasterized scene, each beside the path traced truth.
+
+    scene = FrameScene(builtin_scene("cornell-box"))
+    graph = frame_graph(scene, FrameOptions(tone_curve="agx"))
+    frame = graph.run({"camera": scene.scene.camera})
+
+Surfaces are lit by the reflectance models, textures and lights of `photograd.transport`.
+"""
+
+from __future__ import annotations
+
+from photograd.frame.bloom import bloom, bloom_backward
+from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer, reflect
+from photograd.frame.graph import FrameResult, Pass, PassGraph
+from photograd.frame.light_views import (
+    FrameLight,
+    background,
+    delta_lights,
+    infinite_lights,
+    sky_lights,
+    surface_lights,
+)
+from photograd.frame.lighting import draw_shadow_maps, light_surfaces
+from photograd.frame.occlusion import SsaoSettings, ssao, ssao_backward
+from photograd.frame.options import FrameOptions
+from photograd.frame.pipeline import frame_graph
+from photograd.frame.scene import FrameScene
+from photograd.frame.shadows import ShadowMap, ShadowSettings, draw_shadow_map, look_up_shadow
+from photograd.frame.tone_mapping import tone_map, tone_map_backward
+
+__all__ = [
+    "FrameLight",
+    "FrameOptions",
+    "FrameResult",
+    "FrameScene",
+    "GBuffer",
+    "Pass",
+    "PassGraph",
+    "ShadowMap",
+    "ShadowSettings",
+    "SsaoSettings",
+    "background",
+    "bloom",
+    "bloom_backward",
+    "delta_lights",
+    "draw_shadow_map",
+    "draw_shadow_maps",
+    "draw_surfaces",
+    "fill_gbuffer",
+    "frame_graph",
+    "infinite_lights",
+    "light_surfaces",
+    "look_up_shadow",
+    "reflect",
+    "sky_lights",
+    "ssao",
+    "ssao_backward",
+    "surface_lights",
+    "tone_map",
+    "tone_map_backward",
+]

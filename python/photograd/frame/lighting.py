@@ -1,0 +1,98 @@
+"""Lighting of surfaces: by lights with shadow maps, and by the sky with ambient occlusion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from photograd.capture.camera import Camera
+from photograd.frame.gbuffer import GBuffer, draw_surfaces, reflect
+from photograd.frame.light_views import FrameLight
+from photograd.frame.scene import FrameScene
+from photograd.frame.shadows import ShadowMap, ShadowSettings, draw_shadow_map, look_up_shadow
+from photograd.types import Array
+
+Shadows = Mapping[str, ShadowMap]
+
+
+def draw_shadow_maps(
+    scene: FrameScene, lights: Sequence[FrameLight], settings: ShadowSettings
+) -> dict[str, ShadowMap]:
+    """A shadow map for each light, by its name.
+
+    Args:
+        scene: whose shadows these are.
+        lights: whose.
+        settings: of which the size counts.
+    """
+    return {
+        light.name: draw_shadow_map(scene, light.views(scene, settings.size)) for light in lights
+    }
+
+
+def light_surfaces(
+    scene: FrameScene,
+    surfaces: GBuffer,
+    lights: Sequence[FrameLight],
+    shadows: Shadows,
+    settings: ShadowSettings,
+    visibility: Array | None = None,
+) -> Array:
+    """Radiance (H, W, 3) that the surfaces send to the viewer, without their own emission.
+
+    Args:
+        scene: of the surfaces.
+        surfaces: of a G-buffer.
+        lights: that shine on them.
+        shadows: of the lights that have some.
+        settings: of the shadow maps.
+        visibility: (H, W), a factor of all light; None for 1.
+    """
+    size = surfaces.position.shape
+    out = np.zeros(size, scene.dtype)
+    visible = surfaces.covered.reshape(-1)
+    points = surfaces.position.reshape(-1, 3)
+    normals = surfaces.normal.reshape(-1, 3)
+    for light in lights:
+        wi, irradiance = light.arriving(points)
+        if light.name in shadows:
+            lit = look_up_shadow(shadows[light.name], points, normals, settings)
+            irradiance = irradiance * lit[:, None]
+        if visibility is not None:
+            irradiance = irradiance * visibility.reshape(-1, 1)
+        irradiance = np.where(visible[:, None], irradiance, 0)
+        reflect(scene, surfaces, wi.reshape(size), irradiance.reshape(size), out)
+    return out
+
+
+def light_forward(
+    scene: FrameScene,
+    camera: Camera,
+    lights: Sequence[FrameLight],
+    shadows: Shadows,
+    settings: ShadowSettings,
+) -> tuple[Array, int]:
+    """Forward shading: each shape is lit as it is drawn, whether it is hidden later or not.
+
+    Args:
+        scene: that is drawn, what covers whole; masks are drawn as they are, too.
+        camera: of the picture.
+        lights: that shine.
+        shadows: of the lights that have some.
+        settings: of the shadow maps.
+
+    Returns:
+        Radiance (H, W, 3), as `light_surfaces` finds it from the G-buffer, and how many fragments
+        were lit for it.
+    """
+    size = (camera.height, camera.width)
+    out, nearest, lit = np.zeros((*size, 3), scene.dtype), np.full(size, np.inf), 0
+    for shape in np.unique(scene.shape):
+        visibility, surfaces = draw_surfaces(scene, camera, "opaque", "mask", shape=int(shape))
+        visible = surfaces.covered & (visibility.depth < nearest)
+        surfaces.material[~visible] = -1
+        found = light_surfaces(scene, surfaces, lights, shadows, settings)
+        out[visible], nearest[visible] = found[visible], visibility.depth[visible]
+        lit += int(visible.sum())
+    return out, lit

@@ -1,0 +1,1 @@
+"""Chains of specular surfaces and the design of caustics."""
