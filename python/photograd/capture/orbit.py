@@ -20,31 +20,57 @@ def orbit_cameras(
     Raises:
         RangeError: a box without extent; what `Camera` raises.
     """
+    tilt = np.radians(elevation)
+    outward = []
+    for k in range(count):
+        turn = 2 * np.pi * k / count
+        outward.append([np.cos(tilt) * np.sin(turn), np.sin(tilt), np.cos(tilt) * np.cos(turn)])
+    return _around("orbit_cameras", box, np.array(outward), size, field_of_view)
+
+
+def spiral_cameras(
+    box: Array, count: int, *, size: int, turn: float = 0.0, field_of_view: float = 40.0
+) -> list[Camera]:
+    """`count` square cameras of `size` pixels in all directions around a box, evenly spread.
+
+    They lie on a spiral from below to above, each a golden angle on [Vogel1979]. `turn` and
+    field_of_view in degrees; the distance is that of `orbit_cameras`.
+
+    Args:
+        box: (2, 3) corners in the world, meters.
+        count: of cameras.
+        size: pixels along an edge.
+        turn: of the whole spiral about the vertical axis.
+        field_of_view: of each camera.
+
+    Raises:
+        RangeError: a box without extent; what `Camera` raises.
+    """
+    number = np.arange(count)
+    height = (2 * number + 1) / count - 1
+    angle = np.radians(turn) + np.pi * (3 - np.sqrt(5.0)) * number
+    level = np.sqrt(1 - height * height)
+    outward = np.stack([level * np.sin(angle), height, level * np.cos(angle)], axis=-1)
+    return _around("spiral_cameras", box, outward, size, field_of_view)
+
+
+def _around(
+    function: str, box: Array, outward: Array, size: int, field_of_view: float
+) -> list[Camera]:
+    """A camera in each direction (N, 3) from the middle of a box."""
     center = np.asarray(box, np.float64).mean(axis=0)
     radius = 0.5 * float(np.linalg.norm(box[1] - box[0]))
     if not 0 < radius < np.inf:
         got = f"{np.asarray(box).tolist()}"
-        raise RangeError(message("orbit_cameras", "box", "two different finite corners", got))
+        raise RangeError(message(function, "box", "two different finite corners", got))
     half = np.radians(field_of_view) / 2
     distance = radius / np.sin(half) / 0.9
     focal = 0.5 * size / np.tan(half)
-    tilt = np.radians(elevation)
-    cameras = []
-    for k in range(count):
-        turn = 2 * np.pi * k / count
-        outward = np.array([np.cos(tilt) * np.sin(turn), np.sin(tilt), np.cos(tilt) * np.cos(turn)])
-        cameras.append(
-            Camera(
-                size,
-                size,
-                focal,
-                focal,
-                size / 2,
-                size / 2,
-                look_at(center + distance * outward, center),
-            )
-        )
-    return cameras
+    middle = size / 2
+    return [
+        Camera(size, size, focal, focal, middle, middle, look_at(center + distance * d, center))
+        for d in outward
+    ]
 
 
 def look_at(eye: Array, target: Array) -> Array:

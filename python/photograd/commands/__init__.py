@@ -20,6 +20,7 @@ from photograd.commands import (
     info,
     recover,
     render,
+    simplify,
     trace,
     vectorize,
 )
@@ -34,6 +35,7 @@ def register(app: typer.Typer) -> None:
         trace,
         frame,
         bake_ao,
+        simplify,
         recover,
         vectorize,
         convert,

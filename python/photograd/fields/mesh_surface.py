@@ -87,6 +87,7 @@ class MeshSurface(Fittable):
 
     Attributes:
         faces: (F, 3) uint32, held.
+        edges: of the faces.
         policy: how the vertices are parameterized.
     """
 
@@ -134,8 +135,8 @@ class MeshSurface(Fittable):
         self.params = {"differential": differential, "color_logits": logits}
         self.faces: npt.NDArray[np.uint32] = faces
         self.policy = policy or SurfacePolicy()
-        self._edges = _manifold_edges(faces)
-        self._steps = LargeSteps(self._edges.ends, count, self.policy.smoothness)
+        self.edges = _manifold_edges(faces)
+        self._steps = LargeSteps(self.edges.ends, count, self.policy.smoothness)
 
     @classmethod
     def of_mesh(
@@ -245,7 +246,7 @@ class MeshSurface(Fittable):
         Raises Error if one is not finite.
         """
         del seed, step  # nothing random here
-        picture = SurfacePicture.of(self.vertices, self.colors(), self.faces, self._edges, batch)
+        picture = SurfacePicture.of(self.vertices, self.colors(), self.faces, self.edges, batch)
         rows = picture.image.reshape(-1, 5).astype(self.params["color_logits"].dtype)
         color, opacity, depth = rows[:, :3], rows[:, 3], rows[:, 4]
         outputs = Outputs(*(np.ascontiguousarray(part) for part in (color, opacity, depth)))

@@ -16,6 +16,7 @@ from photograd.fields.mesh_surface import MeshSurface
 from photograd.fitting.data import TrainingView
 from photograd.fitting.gradient_drawings import draw_picture
 from photograd.fitting.loss import picture_loss, picture_loss_backward
+from photograd.geometry.normals import vertex_normals
 from photograd.representation import ImageBatch, RenderOptions
 from photograd.types import Array, FloatArray
 
@@ -88,21 +89,6 @@ def surface_gradients(
         depth * parts.interior[:, :2],
         loss.value,
     )
-
-
-def vertex_normals(vertices: FloatArray, faces: Array) -> FloatArray:
-    """(V, 3) sums of the normals of the faces at each vertex, each as long as twice its area.
-
-    Args:
-        vertices: (V, 3).
-        faces: (F, 3), counter-clockwise seen from outside.
-    """
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    total = np.zeros_like(vertices)
-    for k in range(3):
-        np.add.at(total, faces[:, k], normals)
-    return total
 
 
 def draw_surface_gradients(

@@ -17,6 +17,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("trace", "Path trace a described scene."),
     ("frame", "Draw a scene as a real-time engine does: rasterized, lit pass by pass."),
     ("bake-ao", "Bake how much of the sky each texel of a mesh sees."),
+    ("simplify", "Make a mesh of few triangles look like the mesh it comes from."),
     ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
     ("vectorize", "Draw a picture with curves, as SVG."),
     ("convert", "Convert a file of Gaussians to another format."),

@@ -1,0 +1,301 @@
+"""A mesh of few triangles that looks like a mesh of many [Hasselgren2021].
+
+The dense mesh is drawn from cameras all around it. The simple one starts from a decimation by
+quadric errors, with colors of the nearest vertices, and its faces stay. Its vertices, colors and,
+where it has them, opacities descend on
+
+    loss = picture_loss(image, reference) + w mean (opacity - reference opacity)^2
+
+a view at a step, over a random background. Views between those of the descent measure it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from copy import copy
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from photograd_course.cli import Column
+from photograd_course.optim import Adam
+from photograd_course.random import permutation
+from photograd_course.schedules import exponential
+
+from photograd import _descend as descent
+from photograd._checks import require_bounds, require_instance, require_types
+from photograd._descend import descend, progress_bar
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import spiral_cameras
+from photograd.errors import Error, message
+from photograd.fields.mesh_surface import MeshSurface
+from photograd.fitting.data import TrainingView
+from photograd.fitting.drawing import render_field
+from photograd.fitting.loss import decibels, picture_loss, picture_loss_backward
+from photograd.fitting.steps import Background, display_background
+from photograd.geometry.decimation import decimate
+from photograd.representation import ImageBatch, Outputs, RenderOptions
+from photograd.types import Array, FloatArray
+
+VERTEX_STEP = 0.005
+"""Rate of the vertices at the first step, in mean lengths of an edge."""
+LAST_RATE = 0.1
+"""Part of all rates that is left at the last step."""
+HELD_OUT = 12
+"""Views that measure, and that no step sees."""
+WHITE = np.ones(3)
+PSNR_COLUMN = Column("psnr", "{:.2f} dB".format, label="PSNR")
+
+
+@dataclass(frozen=True)
+class SimplifyOptions:
+    """How a mesh is simplified.
+
+    Attributes:
+        triangles: at most so many.
+        views: of the dense mesh, one of them at a step.
+        size: of a view in pixels along each edge.
+        steps: of the descent; 0 leaves the decimation.
+        silhouette_weight: w above.
+        ssim_weight: share of 1 - SSIM in the loss of a picture.
+        seed: of the order of the views and of the backgrounds.
+    """
+
+    triangles: int
+    views: int = 48
+    size: int = 128
+    steps: int = 600
+    silhouette_weight: float = 2.0
+    ssim_weight: float = 0.2
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Raises DtypeError or RangeError, naming the option."""
+        require_types(self)
+        require_bounds(self, "triangles", low=4, high=2**31 - 1)
+        require_bounds(self, "views", low=2, high=100_000)
+        require_bounds(self, "size", low=16, high=8192)
+        require_bounds(self, "steps", "seed", low=0, high=2**31 - 1)
+        require_bounds(self, "silhouette_weight", low=0)
+        require_bounds(self, "ssim_weight", low=0, high=1)
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """How like the dense mesh another looks, from views that no step has seen.
+
+    Attributes:
+        psnr: mean over the views, over white in display values, in dB.
+        iou: intersection over union of the silhouettes: sum of the smaller over sum of the larger
+            opacity of each pixel, mean over the views.
+    """
+
+    psnr: float
+    iou: float
+
+
+@dataclass(frozen=True, eq=False)
+class SimplifiedMesh:
+    """A simple mesh.
+
+    Attributes:
+        surface: the mesh.
+        start: the decimation that it started from, with as many triangles.
+        before, after: likeness of `start` and of `surface`.
+        history: (steps, 3) step, loss, PSNR of the step's view in dB.
+        finished: whether all steps were done.
+    """
+
+    surface: MeshSurface
+    start: MeshSurface
+    before: Likeness
+    after: Likeness
+    history: FloatArray
+    finished: bool
+
+
+@dataclass(frozen=True)
+class Progress(descent.Progress):
+    """What a progress display gets after a step."""
+
+    psnr: float  # of the step's view, in dB
+
+
+def simplify(
+    dense: MeshSurface,
+    options: SimplifyOptions,
+    *,
+    bar: bool = False,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> SimplifiedMesh:
+    """A mesh of `options.triangles` triangles whose pictures are those of `dense`.
+
+    Args:
+        dense: with its colors; `lit` gives a mesh without any those of a shaded one.
+        options: number of triangles, views and steps.
+        bar: show progress on stderr.
+        should_stop: asked before each step.
+
+    Raises:
+        DtypeError: other types.
+        RangeError: no fewer triangles than `dense` has.
+        SceneError: a decimation that is not manifold.
+        IoError: the library of `decimate` is not installed.
+        Error: a loss that is not finite.
+    """
+    require_instance("simplify", "dense", dense, MeshSurface, "MeshSurface.of_mesh makes one")
+    require_instance("simplify", "options", options, SimplifyOptions)
+    dense = MeshSurface.of_mesh(  # without a system to be solved for each view
+        dense.vertices, dense.faces, dense.params["color_logits"], smoothness=0.0
+    )
+    start = decimated(dense, options.triangles)
+    job = Simplification(dense, start, options)
+    columns = (descent.LOSS_COLUMN, PSNR_COLUMN)
+    with progress_bar("simplify", job, columns, shown=bar) as on_step:
+
+        def after_step(now: float) -> None:
+            del now
+            if on_step:
+                step, loss, psnr = job.history[-1]
+                on_step(Progress(int(step), job.steps, loss, psnr))
+
+        run = descend(job, None, after_step=after_step, should_stop=should_stop)
+    checks = _views(dense, spiral_cameras(dense.box, HELD_OUT, size=options.size, turn=90.0))
+    before, after = (likeness(each, checks) for each in (start, job.surface))
+    history = np.array(job.history, np.float64).reshape(-1, 3)
+    return SimplifiedMesh(job.surface, start, before, after, history, run.finished)
+
+
+def decimated(dense: MeshSurface, triangles: int) -> MeshSurface:
+    """A decimation by quadric errors, each vertex with the color of the nearest of `dense`.
+
+    Args:
+        dense: the mesh.
+        triangles: at most so many.
+
+    Raises:
+        RangeError, SceneError, IoError: as for `simplify`.
+    """
+    vertices, faces = decimate(dense.vertices, dense.faces, triangles)
+    nearest = _nearest_vertices(vertices, dense.vertices)
+    logits = dense.params["color_logits"][nearest]
+    return MeshSurface.of_mesh(vertices, faces, logits, smoothness=0.0)
+
+
+def _nearest_vertices(points: FloatArray, vertices: FloatArray) -> Array:
+    """(N,) numbers of the nearest of (V, 3) vertices."""
+    rows = [np.square(vertices - point).sum(axis=1).argmin() for point in points]
+    return np.array(rows, np.int64)
+
+
+class Simplification:
+    """The descent, as `descend` drives it.
+
+    Attributes:
+        surface: the mesh as it is now.
+        options: of the descent.
+        step_number: how many steps were done.
+        history: (step, loss, PSNR of its view in dB) of each.
+    """
+
+    def __init__(self, dense: MeshSurface, start: MeshSurface, options: SimplifyOptions) -> None:
+        """Draw the references.
+
+        Args:
+            dense: what is drawn.
+            start: what is changed; its arrays are copied.
+            options: of the descent.
+        """
+        self.surface = copy(start)
+        self.surface.params = {name: values.copy() for name, values in start.params.items()}
+        self.options = options
+        self.step_number = 0
+        self.history: list[tuple[float, float, float]] = []
+        self._views = _views(dense, spiral_cameras(dense.box, options.views, size=options.size))
+        self._optimizer = Adam()
+        a, b = (start.vertices[start.edges.ends[:, k]] for k in range(2))
+        self._vertex_rate = VERTEX_STEP * float(np.sqrt(np.square(b - a).sum(axis=1)).mean())
+
+    @property
+    def steps(self) -> int:
+        """Of the whole descent."""
+        return self.options.steps
+
+    def step(self) -> float:
+        """One step; returns the loss before it."""
+        view = self._draw()
+        loss, square, gradients = self._loss_and_gradients(view)
+        if not np.isfinite(loss):
+            got = f"{loss} before step {self.step_number}"
+            raise Error(message("simplify", "loss", "a finite number", got))
+        self._optimizer.step(self.surface.params, gradients, self._rates())
+        self.history.append((self.step_number, loss, decibels(square)))
+        self.step_number += 1
+        return loss
+
+    def save(self, folder: Path) -> None:
+        """It keeps nothing on disk: a simplification takes a minute.
+
+        Args:
+            folder: is not used.
+        """
+        del folder
+
+    def _draw(self) -> TrainingView:
+        turn, index = divmod(self.step_number, len(self._views))
+        order = permutation(self.options.seed, len(self._views), step=turn, dimension=8)
+        return self._views[int(order[index])]
+
+    def _loss_and_gradients(self, view: TrainingView) -> tuple[float, float, dict[str, Array]]:
+        """Loss, mean squared error of the picture, and dL/d params."""
+        options = self.options
+        behind = display_background(
+            Background(None, "random"), seed=options.seed, step=self.step_number
+        )
+        outputs, context = self.surface.render(
+            ImageBatch(view.camera), seed=0, step=0, options=RenderOptions()
+        )
+        picture = picture_loss(outputs, view, behind, ssim_weight=options.ssim_weight)
+        d_outputs, _ = picture_loss_backward(picture)
+        assert outputs.opacity is not None
+        assert d_outputs.opacity is not None
+        gap = outputs.opacity - view.premultiplied[..., 3].reshape(-1)
+        weight = options.silhouette_weight
+        loss = picture.value + weight * float(np.square(gap).mean(dtype=np.float64))
+        d_opacity = d_outputs.opacity + gap * gap.dtype.type(2 * weight / gap.size)
+        gradients = self.surface.render_backward(context, Outputs(d_outputs.color, d_opacity))
+        return loss, picture.mean_square, gradients
+
+    def _rates(self) -> dict[str, float]:
+        fall = exponential(LAST_RATE, self.options.steps)(self.step_number)
+        groups = self.surface.param_groups()
+        rates = {name: fall * spec.learning_rate for name, spec in groups.items()}
+        return rates | {"differential": fall * self._vertex_rate}
+
+
+def _views(surface: MeshSurface, cameras: Sequence[Camera]) -> list[TrainingView]:
+    """What cameras see of a surface."""
+    views = []
+    for camera in cameras:
+        color, opacity, _ = render_field(surface, camera, 0.0)
+        rgba = np.concatenate([color, opacity[..., None]], axis=-1).astype(np.float32)
+        views.append(TrainingView(camera, rgba, None))
+    return views
+
+
+def likeness(surface: MeshSurface, views: Sequence[TrainingView]) -> Likeness:
+    """How like `views` of a mesh another one looks.
+
+    Args:
+        surface: the other one.
+        views: pictures of the first.
+    """
+    errors, shares = [], []
+    for view in views:
+        truth = view.premultiplied.astype(np.float64)
+        color, opacity, _ = render_field(surface, view.camera, 0.0)
+        gap = color - truth[..., :3] - (opacity - truth[..., 3])[..., None] * WHITE
+        errors.append(decibels(float(np.square(gap).mean(dtype=np.float64))))
+        smaller, larger = (f(opacity, truth[..., 3]) for f in (np.minimum, np.maximum))
+        shares.append(float(smaller.sum(dtype=np.float64) / larger.sum(dtype=np.float64)))
+    return Likeness(float(np.mean(errors)), float(np.mean(shares)))
