@@ -63,8 +63,8 @@ public:
         try {
             areas_.emplace(this->contours(), height, width);
         } catch (const std::length_error& failure) {
-            args.range("vertices", "a drawing of fewer edges", failure.what(),
-                       "flatten curves to fewer segments");
+            args.range("drawing", "a smaller one", failure.what(),
+                       "draw fewer shapes, or a smaller picture");
         }
     }
 

@@ -82,6 +82,12 @@ def test_an_outline_that_leaves_the_plane_is_refused() -> None:
         render(Drawing.of([Shape((path,), stroke=Stroke(9e5))]), (4, 4))
 
 
+def test_a_drawing_that_would_not_fit_into_memory_is_refused() -> None:
+    full = Shape((Subpath.lines(SQUARE * 1e4 - 2e4, closed=True),))
+    with pytest.raises(RangeError, match=r"Rendering: drawing: .* more than 2"):
+        render(Drawing.of([full] * 5), (1 << 13, 1 << 13))
+
+
 def test_axes_are_checked() -> None:
     with pytest.raises(ShapeError, match=r"Subpath: points: expected shape \(K, 2\)"):
         Subpath(np.zeros((3, 3)), (1, 1))

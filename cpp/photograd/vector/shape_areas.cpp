@@ -10,6 +10,7 @@ namespace photograd {
 namespace {
 
 constexpr std::uint64_t most_meetings = std::uint64_t{1} << 28;
+constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
 
 /// Rows [first, end) of a picture that an edge meets; none where it lies to the right of all.
 std::pair<std::int64_t, std::int64_t> rows_of(Vec2<double> a, Vec2<double> b, int height,
@@ -54,6 +55,30 @@ std::vector<std::uint32_t> shapes_of_edges(const Contours& contours) {
     return shape;
 }
 
+/// At most so many pixels of spans: from the leftmost to the rightmost vertex of the edges of a
+/// shape in a row, or to the border where the shape may reach it.
+std::uint64_t count_pixels(const Contours& contours, std::span<const std::uint32_t> next,
+                           std::span<const std::uint32_t> shape_of, const OwnerBins& bins,
+                           int height, int width) {
+    std::vector<double> reach(contours.shape_count(), 0.0);
+    for (std::size_t v = 0; v < next.size(); ++v)
+        reach[shape_of[v]] = std::max(reach[shape_of[v]], contours.vertex(v).x);
+    std::uint64_t total = 0;
+    for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+        for (std::uint32_t k = bins.begin[y]; k < bins.begin[y + 1];) {
+            const std::uint32_t shape = shape_of[bins.order[k]];
+            double low = width, high = reach[shape] < width ? 0 : width;
+            for (; k < bins.begin[y + 1] && shape_of[bins.order[k]] == shape; ++k)
+                for (const std::uint32_t v : {bins.order[k], next[bins.order[k]]}) {
+                    low = std::min(low, contours.vertex(v).x);
+                    high = std::max(high, contours.vertex(v).x);
+                }
+            total += static_cast<std::uint64_t>(std::min(high + 1, double(width)) -
+                                                std::clamp(low, 0.0, double(width)) + 1);
+        }
+    return total;
+}
+
 /// visit(column, u0, u1) for the parts of a line from x = x0 to x = x1 in each column, u in [0, 1]
 /// along it.
 template <class Visit>
@@ -93,6 +118,8 @@ ShapeAreas::ShapeAreas(const Contours& contours, int height, int width)
     const std::vector<std::uint32_t> next = contours.next_vertices();
     const std::vector<std::uint32_t> shape_of = shapes_of_edges(contours);
     const OwnerBins bins = edges_by_row(contours, next, height, width);
+    if (count_pixels(contours, next, shape_of, bins, height, width) > most_pixels)
+        throw std::length_error("shapes that cover pixels more than 2^28 times");
     std::vector<Row> rows(static_cast<std::size_t>(height));
     parallel_for(height, [&](std::int64_t y) {
         const auto row = static_cast<std::size_t>(y);

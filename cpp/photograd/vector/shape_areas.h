@@ -23,7 +23,8 @@ struct AreaSpan {
 
 class ShapeAreas {
 public:
-    /// Throws std::length_error where edges and rows meet more than 2^28 times.
+    /// Throws std::length_error where edges and rows, or shapes and pixels, meet more than 2^28
+    /// times.
     ShapeAreas(const Contours& contours, int height, int width);
 
     [[nodiscard]] int height() const { return height_; }

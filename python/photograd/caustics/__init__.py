@@ -12,20 +12,14 @@ number of threads.
 
 from __future__ import annotations
 
-from photograd.caustics.chains import (
-    Chains,
-    SpecularMesh,
-    SpecularScene,
-    SpecularSphere,
-    SurfaceGradient,
-    trace_chains,
-    trace_chains_backward,
-)
+from photograd.caustics.chains import Chains, SpecularScene, trace_chains, trace_chains_backward
 from photograd.caustics.design import CausticDesign, CausticResult, design_caustic
 from photograd.caustics.lens import Lens
 from photograd.caustics.measure import Caustic, measure
 from photograd.caustics.options import CausticOptions
+from photograd.caustics.picture import discontinuities, specular_picture, specular_picture_backward
 from photograd.caustics.start import transport_lens
+from photograd.caustics.surfaces import SpecularMesh, SpecularSphere, SurfaceGradient
 from photograd.caustics.transport_map import Axes, transport_map
 
 __all__ = [
@@ -41,7 +35,10 @@ __all__ = [
     "SpecularSphere",
     "SurfaceGradient",
     "design_caustic",
+    "discontinuities",
     "measure",
+    "specular_picture",
+    "specular_picture_backward",
     "trace_chains",
     "trace_chains_backward",
     "transport_lens",

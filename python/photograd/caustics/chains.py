@@ -31,73 +31,17 @@ from photograd.caustics.intersections import (
     unit,
 )
 from photograd.caustics.scattering import Scattered, fresnel, scatter, scatter_backward, sides
+from photograd.caustics.surfaces import SpecularMesh, SpecularSphere, Surface, SurfaceGradient
 from photograd.errors import RangeError, message
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd.types import Array, FloatArray
 
 OFFSET = 1e-5
 """Of the extent of all surfaces: rays that leave a surface do not meet it again within it."""
+LEAST = 0.1
+"""Probability of each lobe of glass, at least. At the rim of a sphere F goes to 1 with an infinite
+slope, and the derivative of a refraction sampled with 1 - F would have an infinite variance."""
 ENDED, TRAPPED, LEAKED = 0, 1, 2
-
-
-@dataclass(frozen=True, eq=False)
-class SpecularMesh:
-    """A triangle mesh of smooth glass, or a mirror.
-
-    Attributes:
-        vertices: (V, 3) meters.
-        faces: (F, 3) counter-clockwise seen from outside.
-        normals: (V, 3) of any length, blended within faces; None is flat.
-        eta: refractive index inside over outside; None is a mirror, whose inside is black.
-
-    Raises:
-        DtypeError, ShapeError: arrays of other types or shapes.
-        RangeError: numbers that are not finite, vertex numbers out of range, eta not above 0.
-    """
-
-    vertices: Array
-    faces: Array
-    normals: Array | None = None
-    eta: float | None = 1.5
-
-    def __post_init__(self) -> None:
-        call = Arguments("SpecularMesh", np.float64)
-        object.__setattr__(self, "vertices", call.array("vertices", self.vertices, ("V", 3)))
-        last = len(self.vertices) - 1
-        faces = call.array("faces", self.faces, ("F", 3), dtype=np.int64, low=0, high=last)
-        object.__setattr__(self, "faces", faces)
-        if self.normals is not None:
-            object.__setattr__(self, "normals", call.array("normals", self.normals, ("V", 3)))
-        if self.eta is not None:
-            call.number("eta", self.eta, above=0)
-
-
-@dataclass(frozen=True, eq=False)
-class SpecularSphere:
-    """A sphere of smooth glass, or a mirror.
-
-    Attributes:
-        center: (3,) meters.
-        radius: meters, above 0.
-        eta: as of `SpecularMesh`.
-
-    Raises:
-        ShapeError, RangeError: numbers that are not finite, a radius or eta not above 0.
-    """
-
-    center: Array
-    radius: float
-    eta: float | None = 1.5
-
-    def __post_init__(self) -> None:
-        call = Arguments("SpecularSphere", np.float64)
-        object.__setattr__(self, "center", call.array("center", self.center, (3,)))
-        call.number("radius", self.radius, above=0)
-        if self.eta is not None:
-            call.number("eta", self.eta, above=0)
-
-
-Surface = SpecularMesh | SpecularSphere
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,24 +79,6 @@ class Chains:
     count: Array
     first: Array
     steps: list[_Step] = field(default_factory=list, repr=False)
-
-
-@dataclass(frozen=True, eq=False)
-class SurfaceGradient:
-    """dL/d of a surface; what the surface does not have stays 0 or empty.
-
-    Attributes:
-        vertices, normals: (V, 3).
-        eta: one number.
-        center: (3,).
-        radius: one number.
-    """
-
-    vertices: FloatArray
-    normals: FloatArray
-    eta: float
-    center: FloatArray
-    radius: float
 
 
 class SpecularScene:
@@ -226,9 +152,9 @@ def trace_chains(
         scene: the surfaces.
         origins: (R, 3) meters, outside of all glass.
         directions: (R, 3) of any length but zero, made unit.
-        u: (R, K) numbers in [0, 1): surface k of a ray reflects where u[:, k] is below Fresnel's
-            reflectance, with `factor` divided by the probability; behind K surfaces a ray is
-            trapped. None refracts at all glass.
+        u: (R, K) numbers in [0, 1): surface k of a ray reflects where u[:, k] is below
+            0.1 + 0.8 F, or 1 under total reflection, with `factor` divided by the probability;
+            behind K surfaces a ray is trapped. None refracts at all glass.
         max_surfaces: longest chain, for `u` None.
 
     Raises:
@@ -282,8 +208,9 @@ def _step(
     eta = surface.eta
     _, facing, c, e = sides(d, point.normal, 1.0 if eta is None else eta)
     F = np.ones(len(rays)) if eta is None else fresnel(e, c)
-    reflected = np.full(len(rays), eta is None) if u is None else u < F
-    pmf = np.ones(len(rays)) if u is None else np.where(reflected, F, 1.0 - F)
+    p = np.where(F < 1.0, LEAST + (1.0 - 2.0 * LEAST) * F, 1.0)
+    reflected = np.full(len(rays), eta is None) if u is None else u < p
+    pmf = np.ones(len(rays)) if u is None else np.where(reflected, p, 1.0 - p)
     total = (F >= 1.0) & ~reflected
     out = scatter(d, point.normal, eta, reflected, pmf)
     flat = facing if isinstance(surface, SpecularSphere) else _flat_side(surface, primitive, d)

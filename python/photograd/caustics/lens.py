@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
-from photograd.caustics.chains import SpecularMesh, SurfaceGradient
+from photograd.caustics.surfaces import SpecularMesh, SurfaceGradient
 from photograd.errors import RangeError, message
 from photograd.transport.shapes import MeshShape
 from photograd.types import Array, FloatArray

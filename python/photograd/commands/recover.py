@@ -13,6 +13,8 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 
 from photograd._checks import typed
 from photograd._descend import progress_bar, run_folder
+from photograd.caustics.options import RATES
+from photograd.commands.recover_caustic import lens_name, options_of, recover_lens
 from photograd.commands.shared import (
     DepthOption,
     StepsOption,
@@ -57,14 +59,27 @@ ParameterOption = Annotated[
         "--parameter",
         help="A parameter to find: materials.NAME.PARAMETER, textures.NAME, emission.SHAPE, "
         "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated. Refused where the "
-        "derivative is incomplete: eta of smooth glass, a mask's alpha.",
+        "derivative is incomplete: eta of smooth glass, a mask's alpha. Or, alone, "
+        "shapes.NAME.heights of a box of glass: the target is then the light on --receiver.",
     ),
 ]
 OutOption = Annotated[Path, out_option("Folder for the result and checkpoints.")]
 SppOption = Annotated[
     int, typer.Option("--spp", min=1, help="Samples a pixel of each of a step's two halves.")
 ]
-RateOption = Annotated[float, typer.Option("--learning-rate", help="Of Adam, at the first step.")]
+RateOption = Annotated[
+    float | None,
+    typer.Option(
+        "--learning-rate",
+        help="Of Adam, at the first step.",
+        show_default=f"{DEFAULTS.learning_rate}; of heights 0.01 from transport, 0.3 from plane",
+    ),
+]
+ReceiverOption = Annotated[
+    str | None,
+    typer.Option("--receiver", help="With shapes.NAME.heights: the rectangle that is lit."),
+]
+StartOption = Annotated[str, typer.Option("--start", help=f"Of heights: {', '.join(RATES)}.")]
 LossOption = Annotated[
     str, typer.Option("--loss", help=f"What is made small: {', '.join(LOSSES)}.")
 ]
@@ -97,11 +112,13 @@ def recover(
     camera: CameraOption = None,
     steps: StepsOption = DEFAULTS.steps,
     spp: SppOption = DEFAULTS.spp,
-    learning_rate: RateOption = DEFAULTS.learning_rate,
+    learning_rate: RateOption = None,
     loss: LossOption = DEFAULTS.loss,
     max_depth: DepthOption = DEFAULTS.path.max_depth,
     views: ViewsOption = DEFAULTS.views,
     size: SizeOption = None,
+    receiver: ReceiverOption = None,
+    start: StartOption = "transport",
     resume: ResumeOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
@@ -112,24 +129,29 @@ def recover(
 
     SCENE says all that is known, and first guesses of what is not. Writes OUT/recovery.npz every 30
     seconds and on Ctrl-C, from which --resume goes on to the same bits; at the end OUT/found.json,
-    pictures of textures and maps, curves.png and comparison.png.
+    pictures of textures and maps, curves.png and comparison.png. Of heights: OUT/lens.stl in
+    millimeters, heights.exr in meters, comparison.png and found.json.
 
     Example: photograd recover cornell-box --target cornell.exr --parameter materials.red.albedo=0.5
     --out found
     """
     use_threads(threads)
-    context.with_resource(run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"))
     images = [read_target(path) for path in target]
     described, _ = load_scene(scene, size or max(images[0].shape[:2]))
-    if camera and len(camera) != len(target):
-        expected = f"one for each of {len(target)} targets"
-        raise RangeError(message("recover", "--camera", expected, len(camera)))
-    cameras = [read_scene(path).camera for path in camera] if camera else [None] * len(images)
-    targets = [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
+    if (lens := lens_name(parameter)) is not None:
+        design = options_of(start=start, steps=steps, learning_rate=learning_rate, seed=seed)
+        with stop_on_signals() as stopping:
+            said = recover_lens(
+                described, lens, receiver, images, design, out, resume=resume, stopping=stopping
+            )
+        finish(said, said["step"], steps, stopping, as_json=as_json)
+        return
+    context.with_resource(run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"))
+    targets = with_cameras(images, camera)
     options = RecoveryOptions(
         steps=steps,
         spp=spp,
-        learning_rate=learning_rate,
+        learning_rate=DEFAULTS.learning_rate if learning_rate is None else learning_rate,
         loss=typed("recover", "--loss", Loss, loss),
         views=views,
         seed=seed,
@@ -141,10 +163,30 @@ def recover(
         note(f"resumed at step {job.step_number} of {steps}")
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping)
-    emit(write_result(job, result, out), as_json=as_json, title="recover")
-    if not result.finished:
-        note(f"stopped at step {result.step} of {steps}; continue with --resume")
+    finish(write_result(job, result, out), result.step, steps, stopping, as_json=as_json)
+
+
+def finish(
+    said: dict[str, Any], step: int, steps: int, stopping: StopRequest, *, as_json: bool
+) -> None:
+    """Print the last line; a run that was stopped ends with the status of its signal."""
+    emit(said, as_json=as_json, title="recover")
+    if step < steps:
+        note(f"stopped at step {step} of {steps}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def with_cameras(images: list[Any], paths: list[Path] | None) -> list[Target]:
+    """Targets, each with the camera of a scene file, if there are any.
+
+    Raises:
+        RangeError: another number of files than of pictures.
+    """
+    if paths and len(paths) != len(images):
+        expected = f"one for each of {len(images)} targets"
+        raise RangeError(message("recover", "--camera", expected, len(paths)))
+    cameras = [read_scene(path).camera for path in paths] if paths else [None] * len(images)
+    return [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
 
 
 def read_target(path: Path) -> Any:
