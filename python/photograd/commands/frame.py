@@ -72,6 +72,17 @@ ExposureOption = Annotated[float, typer.Option("--exposure", help="In stops.")]
 BloomOption = Annotated[
     float, typer.Option("--bloom", min=0.0, max=1.0, help="Part of the light that spreads.")
 ]
+FocusOption = Annotated[
+    int,
+    typer.Option("--depth-of-field", min=0, help="Samples of the lens's blur a pixel; 0 for none."),
+]
+AberrationOption = Annotated[
+    float, typer.Option("--aberration", help="Relative difference of the sizes of red and blue.")
+]
+VignetteOption = Annotated[
+    float, typer.Option("--vignette", min=0.0, max=1.0, help="Part of the natural vignetting.")
+]
+FxaaOption = Annotated[bool, typer.Option("--fxaa", help="Blend across edges afterwards.")]
 BLOOM_LEVELS = 6
 
 
@@ -98,6 +109,10 @@ def frame(
     tone_curve: ToneOption = "none",
     exposure: ExposureOption = 0.0,
     bloom: BloomOption = 0.0,
+    depth_of_field: FocusOption = 0,
+    aberration: AberrationOption = 0.0,
+    vignette: VignetteOption = 0.0,
+    fxaa: FxaaOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -126,6 +141,10 @@ def frame(
         bloom_weights=(bloom / BLOOM_LEVELS,) * BLOOM_LEVELS if bloom else (),
         tone_curve=_tone_curve(tone_curve),
         exposure=exposure,
+        depth_of_field=depth_of_field,
+        aberration=aberration,
+        vignette=vignette,
+        fxaa=fxaa,
     )
     shown = _shown(show or [])
     described, _ = load_scene(scene, size, camera)

@@ -9,9 +9,13 @@ Surfaces are lit by the reflectance models, textures and lights of `photograd.tr
 
 from __future__ import annotations
 
+from photograd.frame.antialiasing import TemporalAntialiasing, fxaa
 from photograd.frame.bloom import bloom, bloom_backward
+from photograd.frame.depth_of_field import circle_of_confusion, depth_of_field
+from photograd.frame.dithering import dither
 from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer, reflect
 from photograd.frame.graph import FrameResult, Pass, PassGraph
+from photograd.frame.lens_effects import chromatic_aberration, vignette
 from photograd.frame.light_views import (
     FrameLight,
     background,
@@ -21,6 +25,7 @@ from photograd.frame.light_views import (
     surface_lights,
 )
 from photograd.frame.lighting import draw_shadow_maps, light_surfaces
+from photograd.frame.motion import motion_blur, velocity
 from photograd.frame.occlusion import SsaoSettings, ssao, ssao_backward
 from photograd.frame.options import FrameOptions
 from photograd.frame.pipeline import frame_graph
@@ -39,18 +44,25 @@ __all__ = [
     "ShadowMap",
     "ShadowSettings",
     "SsaoSettings",
+    "TemporalAntialiasing",
     "background",
     "bloom",
     "bloom_backward",
+    "chromatic_aberration",
+    "circle_of_confusion",
     "delta_lights",
+    "depth_of_field",
+    "dither",
     "draw_shadow_map",
     "draw_shadow_maps",
     "draw_surfaces",
     "fill_gbuffer",
     "frame_graph",
+    "fxaa",
     "infinite_lights",
     "light_surfaces",
     "look_up_shadow",
+    "motion_blur",
     "reflect",
     "sky_lights",
     "ssao",
@@ -58,4 +70,6 @@ __all__ = [
     "surface_lights",
     "tone_map",
     "tone_map_backward",
+    "velocity",
+    "vignette",
 ]

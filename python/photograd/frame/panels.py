@@ -16,7 +16,7 @@ from photograd.types import Array
 
 PANELS = (
     *("visibility", "gbuffer", "shadows", "occlusion", "direct", "sky_light", "background"),
-    *("opaque", "layered", "radiance", "bloom", "display"),
+    *("opaque", "layered", "focused", "radiance", "bloom", "lens", "toned", "display"),
 )
 """Buffers that can be shown."""
 COLORS = np.array(

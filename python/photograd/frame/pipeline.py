@@ -16,8 +16,10 @@ Buffers, in the order in which they are made:
     background      radiance behind everything
     opaque          all of these
     layered         with surfaces before it that cover in part
+    focused         blurred by the depth of field
     radiance        of the pixels
-    bloom, display
+    bloom, lens     with bloom; with the lens's aberration and vignette
+    toned, display  tone mapped; with edges blended
 """
 
 from __future__ import annotations
@@ -25,11 +27,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from photograd_course.color import srgb_decode, srgb_encode
 
 from photograd.capture.camera import Camera
+from photograd.frame.antialiasing import fxaa
 from photograd.frame.bloom import bloom
+from photograd.frame.depth_of_field import depth_of_field
 from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer
 from photograd.frame.graph import Pass, PassGraph
+from photograd.frame.lens_effects import chromatic_aberration, vignette
 from photograd.frame.light_views import background, delta_lights, sky_lights, surface_lights
 from photograd.frame.lighting import Shadows, draw_shadow_maps, light_forward, light_surfaces
 from photograd.frame.occlusion import ssao
@@ -77,9 +83,12 @@ def frame_graph(scene: FrameScene, options: FrameOptions) -> PassGraph:
                 ("samples", "visibility", "opaque", "shadows"),
                 ("layered",),
             ),
-            Pass("resolve", passes.resolve, ("layered",), ("radiance",)),
+            Pass("focus", passes.focus, ("samples", "visibility", "layered"), ("focused",)),
+            Pass("resolve", passes.resolve, ("focused",), ("radiance",)),
             Pass("bloom", passes.bloom, ("radiance",), ("bloom",)),
-            Pass("tone map", passes.tone_map, ("bloom",), ("display",)),
+            Pass("lens", passes.lens, ("camera", "bloom"), ("lens",)),
+            Pass("tone map", passes.tone_map, ("lens",), ("toned",)),
+            Pass("fxaa", passes.fxaa, ("toned",), ("display",)),
         ],
         ["camera"],
     )
@@ -107,12 +116,18 @@ class _Passes:
             cy=n * camera.cy,
         )
 
-    def resolve(self, layered: Array) -> Array:
+    def focus(self, samples: Camera, visibility: Visibility, layered: Array) -> Array:
+        count, lens = self.options.depth_of_field, self.scene.scene.lens
+        if not count or not lens.radius:
+            return layered
+        return depth_of_field(layered, visibility.depth, samples, lens, samples=count)
+
+    def resolve(self, focused: Array) -> Array:
         """The mean of the samples of each pixel."""
         n = self.options.supersampling
-        height, width, _ = layered.shape
-        boxes = layered.reshape(height // n, n, width // n, n, 3)
-        mean: Array = boxes.mean(axis=(1, 3), dtype=layered.dtype)
+        height, width, _ = focused.shape
+        boxes = focused.reshape(height // n, n, width // n, n, 3)
+        mean: Array = boxes.mean(axis=(1, 3), dtype=focused.dtype)
         return mean
 
     def surfaces(self, camera: Camera) -> tuple[Visibility, GBuffer]:
@@ -184,8 +199,21 @@ class _Passes:
         weights = np.array(self.options.bloom_weights, radiance.dtype)
         return bloom(radiance, weights, self.options.bloom_threshold) if len(weights) else radiance
 
+    def lens(self, camera: Camera, radiance: Array) -> Array:
+        if self.options.aberration:
+            radiance = chromatic_aberration(radiance, self.options.aberration)
+        if self.options.vignette:
+            radiance = vignette(radiance, camera, self.options.vignette)
+        return radiance
+
     def tone_map(self, radiance: Array) -> Array:
         return show(radiance, self.options)
+
+    def fxaa(self, toned: Array) -> Array:
+        if not self.options.fxaa:
+            return toned
+        encoded = srgb_encode(np.clip(toned, 0.0, 1.0)).astype(toned.dtype)
+        return srgb_decode(fxaa(encoded)).astype(toned.dtype)
 
 
 def show(radiance: Array, options: FrameOptions) -> Array:
