@@ -68,17 +68,17 @@ def unit_backward(m: FloatArray, d_n: FloatArray) -> FloatArray:
 class Point(NamedTuple):
     """Where rays meet a surface."""
 
-    position: FloatArray  # (R, 3) meters
-    normal: FloatArray  # (R, 3) unit length, shading normal, outwards
-    barycentrics: FloatArray  # (R, 2) of the second and third corner; 0 on spheres
+    position: Array  # (R, 3) meters
+    normal: Array  # (R, 3) unit length, shading normal, outwards
+    barycentrics: Array  # (R, 2) of the second and third corner; 0 on spheres
 
 
 class PointGradient(NamedTuple):
     """dL/d of a ray and of the surface that it meets, one row a ray."""
 
-    origin: FloatArray
-    direction: FloatArray
-    surface: tuple[FloatArray, ...]
+    origin: Array
+    direction: Array
+    surface: tuple[Array, ...]
 
 
 def on_triangle(

@@ -30,9 +30,9 @@ Light = DirectionalLight | PointLight
 class Rays(NamedTuple):
     """Light on its way to a lens."""
 
-    origin: FloatArray  # (R, 3) meters
-    direction: FloatArray  # (R, 3) unit
-    power: FloatArray  # (R,) watts
+    origin: Array  # (R, 3) meters
+    direction: Array  # (R, 3) unit
+    power: Array  # (R,) watts
 
 
 def check_light(function: str, light: Light, lens: Lens) -> None:

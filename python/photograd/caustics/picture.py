@@ -50,7 +50,7 @@ class _Traced(NamedTuple):
 
     specular: SpecularScene
     chains: Chains
-    color: FloatArray  # (R, 3) of the lobes
+    color: Array  # (R, 3) of the lobes
     pixel: Array  # (R,)
 
 

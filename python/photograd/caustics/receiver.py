@@ -23,8 +23,8 @@ from photograd.types import Array, FloatArray
 class Landing(NamedTuple):
     """Where rays land, in cells."""
 
-    x: FloatArray  # (R,) 0 at the center of the first column
-    y: FloatArray  # (R,) 0 at the center of the top row
+    x: Array  # (R,) 0 at the center of the first column
+    y: Array  # (R,) 0 at the center of the top row
     good: Array  # (R,) whether a ray comes through the front
 
 

@@ -27,16 +27,16 @@ from photograd.types import Array, FloatArray
 class Scattered(NamedTuple):
     """A ray behind a surface."""
 
-    direction: FloatArray  # (R, 3)
-    factor: FloatArray  # (R,) of the power
+    direction: Array  # (R, 3)
+    factor: Array  # (R,) of the power
 
 
 class ScatteredGradient(NamedTuple):
     """dL/d of what went into `scatter`."""
 
-    direction: FloatArray  # (R, 3)
-    normal: FloatArray  # (R, 3)
-    eta: FloatArray  # (R,), to be summed up
+    direction: Array  # (R, 3)
+    normal: Array  # (R, 3)
+    eta: Array  # (R,), to be summed up
 
 
 def fresnel(e: FloatArray, c: FloatArray) -> FloatArray:

@@ -39,8 +39,8 @@ SAFE = 300.0
 class Axes(NamedTuple):
     """Coordinates of a grid's columns (n,) and rows (m,), meters."""
 
-    x: FloatArray
-    y: FloatArray
+    x: Array
+    y: Array
 
 
 def transport_map(source: Array, source_axes: Axes, target: Array, target_axes: Axes) -> FloatArray:

@@ -31,6 +31,7 @@ from photograd.frame.shadows import ShadowSettings
 from photograd.frame.tone_mapping import TONE_CURVES, ToneCurve
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.write import write_png, write_radiance
+from photograd.transport.scene import Scene
 from photograd.types import Array
 
 OutOption = Annotated[
@@ -148,24 +149,30 @@ def frame(
     )
     shown = _shown(show or [])
     described, _ = load_scene(scene, size, camera)
-    ready = FrameScene(described)
-    if (ready.kind == KINDS.index("glass")).any():
-        note("surfaces that light passes through are left out; they cast shadows")
-    began = time.monotonic()
-    result = frame_graph(ready, options).run({"camera": described.camera})
-    seconds = time.monotonic() - began
+    result, report = _draw(described, options)
     _write(result, out)
     for name in shown:
         _write_sheet(out.with_suffix(f".{name}.png"), list(panels(result, name).values()))
-    report: dict[str, Any] = {"out": out, "triangles": len(ready.faces)}
-    report |= {f"{name} ms": round(spent, 1) for name, spent in result.milliseconds.items()}
-    report["seconds"] = round(seconds, 3)
+    report = {"out": out} | report
     if against:
         rows = compare_with_paths(
             described, options, spp=spp, seed=seed, max_depth=max_depth, report=note
         )
         report |= _written(rows, out)
     emit(report, as_json=as_json, title="frame")
+
+
+def _draw(scene: Scene, options: FrameOptions) -> tuple[FrameResult, dict[str, Any]]:
+    """Buffers of the frame, and what is reported of them."""
+    ready = FrameScene(scene)
+    if (ready.kind == KINDS.index("glass")).any():
+        note("surfaces that light passes through are left out; they cast shadows")
+    began = time.monotonic()
+    result = frame_graph(ready, options).run({"camera": scene.camera})
+    seconds = time.monotonic() - began
+    report: dict[str, Any] = {"triangles": len(ready.faces)}
+    report |= {f"{name} ms": round(spent, 1) for name, spent in result.milliseconds.items()}
+    return result, report | {"seconds": round(seconds, 3)}
 
 
 def _tone_curve(name: str) -> ToneCurve | None:

@@ -32,6 +32,7 @@ from photograd.frame.pipeline import frame_graph
 from photograd.frame.scene import FrameScene
 from photograd.frame.shadows import ShadowMap, ShadowSettings, draw_shadow_map, look_up_shadow
 from photograd.frame.tone_mapping import tone_map, tone_map_backward
+from photograd.frame.tuning import TunedOcclusion, traced_occlusion, tune_occlusion
 
 __all__ = [
     "FrameLight",
@@ -45,6 +46,7 @@ __all__ = [
     "ShadowSettings",
     "SsaoSettings",
     "TemporalAntialiasing",
+    "TunedOcclusion",
     "background",
     "bloom",
     "bloom_backward",
@@ -70,6 +72,8 @@ __all__ = [
     "surface_lights",
     "tone_map",
     "tone_map_backward",
+    "traced_occlusion",
+    "tune_occlusion",
     "velocity",
     "vignette",
 ]

@@ -151,12 +151,12 @@ class TemporalAntialiasing:
         size = color.shape[:2]
         call.array("color", color, self.history.shape)
         x, y = pixel_centers(*size)
-        lost = np.zeros(size, bool)
+        outside = np.zeros(size, bool)
         if moved is not None:
             moved = call.array("moved", moved, (*size, 2), dtype=np.float64, finite=False)
             x, y = x - moved[..., 0], y - moved[..., 1]
-            lost = ~((x >= 0) & (y >= 0) & (x <= size[1]) & (y <= size[0]))
-            x, y = np.where(lost, 0.5, x), np.where(lost, 0.5, y)
+            outside = ~((x >= 0) & (y >= 0) & (x <= size[1]) & (y <= size[0]))
+            x, y = np.where(outside, 0.5, x), np.where(outside, 0.5, y)
         held = self.history if moved is None else look_up(self.history, x, y)
         if self.clamped:
             around = [_moved_color(color, dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
@@ -164,7 +164,7 @@ class TemporalAntialiasing:
         # The first frames are averaged alike.
         weight = max(self.weight, 1.0 / (self.frames + 1))
         mixed = held + weight * (color - held)
-        self.history = np.where(lost[..., None], color, mixed).astype(color.dtype)
+        self.history = np.where(outside[..., None], color, mixed).astype(color.dtype)
         self.frames += 1
         return self.history.copy()
 
