@@ -25,7 +25,7 @@ from support.bits import same_bits
 from tests.raster import oracle
 
 
-@same_bits("rasterizer")
+@same_bits("rasterizer", kernels=("draw_span",))
 def everything() -> list[Any]:
     """A sphere of several pieces of faces and tiles; the last ones are not whole."""
     vertices, faces = oracle.sphere(90, 60)

@@ -7,7 +7,7 @@ with the slopes for it exists to first order [Yue2014]. Sinkhorn's iteration fin
 
     f_i = -eps log sum_j exp((g_j - |x_i - y_j|^2) / eps + log b_j)       and g_j the same from f
 
-in logarithms, with eps falling from the squared extent to the squared spacing. On grids with
+in logarithms, with eps lowered from the squared extent to the squared spacing. On grids with
 parallel axes the sum over j is one over columns and one over rows. The image of x_i is the mean of
 y_j under the plan. The blur pulls it inwards, by about as much as a plan from a to itself would;
 that displacement is taken off.

@@ -14,6 +14,7 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 from photograd._checks import typed
 from photograd._descend import progress_bar, run_folder
 from photograd.caustics.options import RATES
+from photograd.caustics.state import FILE_NAME as LENS_FILE_NAME
 from photograd.commands.recover_caustic import lens_name, options_of, recover_lens
 from photograd.commands.shared import (
     DepthOption,
@@ -136,9 +137,12 @@ def recover(
     --out found
     """
     use_threads(threads)
+    lens = lens_name(parameter)
+    state = FILE_NAME if lens is None else LENS_FILE_NAME
+    context.with_resource(run_folder("recover", out, state, resume=resume, argument="--out"))
     images = [read_target(path) for path in target]
     described, _ = load_scene(scene, size or max(images[0].shape[:2]))
-    if (lens := lens_name(parameter)) is not None:
+    if lens is not None:
         design = options_of(start=start, steps=steps, learning_rate=learning_rate, seed=seed)
         with stop_on_signals() as stopping:
             said = recover_lens(
@@ -146,7 +150,6 @@ def recover(
             )
         finish(said, said["step"], steps, stopping, as_json=as_json)
         return
-    context.with_resource(run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"))
     targets = with_cameras(images, camera)
     options = RecoveryOptions(
         steps=steps,

@@ -11,11 +11,10 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import note
 
 from photograd._checks import typed
-from photograd._descend import progress_bar, run_folder
+from photograd._descend import progress_bar
 from photograd.caustics import CausticDesign, CausticOptions, CausticResult
 from photograd.caustics.from_scene import height_shape, lens_of, light_of_scene, receiver_of
 from photograd.caustics.options import Start
-from photograd.caustics.state import FILE_NAME
 from photograd.commands.shared import StopRequest
 from photograd.errors import RangeError, message
 from photograd.images.write import write_exr
@@ -64,7 +63,7 @@ def recover_lens(
         receiver: name of the rectangle.
         targets: (H, W, C) light on it, one picture.
         options: of the design.
-        out: folder.
+        out: folder, held by the caller.
         resume: go on with the design in `out`.
         stopping: ends the run when it is set.
 
@@ -81,14 +80,13 @@ def recover_lens(
     wall = receiver_of(scene, receiver, height, width)
     vertices = (min(FINEST, 2 * height + 1), min(FINEST, 2 * width + 1))
     plate = lens_of(scene, lens, wall, vertices)
-    with run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"):
-        job = CausticDesign(plate, light_of_scene(scene), wall, targets[0], options)
-        if resume:
-            job.load(out)
-            note(f"resumed at step {job.step_number} of {job.steps}")
-        with progress_bar("recover", job) as on_step:
-            result = job.run(out, on_step=on_step, should_stop=stopping)
-        return _write(result, out)
+    job = CausticDesign(plate, light_of_scene(scene), wall, targets[0], options)
+    if resume:
+        job.load(out)
+        note(f"resumed at step {job.step_number} of {job.steps}")
+    with progress_bar("recover", job) as on_step:
+        result = job.run(out, on_step=on_step, should_stop=stopping)
+    return _write(result, out)
 
 
 def options_of(*, start: str, steps: int, learning_rate: float | None, seed: int) -> CausticOptions:

@@ -123,8 +123,8 @@ def bernstein(degree: npt.NDArray[np.int64], t: FloatArray) -> FloatArray:
         fall.append(fall[-1] * (1 - t))
     powers = np.stack(fall, axis=1)
     left = np.clip(degree[:, None] - np.arange(4), 0, 3)
-    falling = np.take_along_axis(powers, left, axis=1)
-    found: FloatArray = BINOMIALS[degree] * np.stack(rise, axis=1) * falling
+    remaining = np.take_along_axis(powers, left, axis=1)
+    found: FloatArray = BINOMIALS[degree] * np.stack(rise, axis=1) * remaining
     return found
 
 
