@@ -28,7 +28,7 @@ def chromatic_aberration(color: Array, strength: float) -> Array:
     strength = call.number("strength", strength, above=-0.5, below=0.5)
     if strength == 0:
         return color.copy()
-    height, width, _ = color.shape
+    height, width = color.shape[:2]
     x, y = pixel_centers(height, width, color.dtype)
     out = color.copy()
     for channel, scale in ((0, 1 + strength), (2, 1 - strength)):

@@ -87,7 +87,7 @@ def motion_blur(color: Array, moved: Array, shutter: float = 1.0, *, samples: in
     shutter = call.number("shutter", shutter, low=0.0, high=1.0)
     count = call.integer("samples", samples, low=1, high=4096)
     moved = np.where(np.isfinite(moved), moved, 0.0).astype(color.dtype)
-    height, width, _ = color.shape
+    height, width = color.shape[:2]
     x, y = pixel_centers(height, width, color.dtype)
     total = np.zeros_like(color)
     for k in range(count):
