@@ -2,6 +2,9 @@
 #include "array_args.h"
 #include "module.h"
 #include "photograd/frame/bloom.h"
+#include "photograd/frame/disk_occlusion.h"
+#include "photograd/frame/horizon.h"
+#include "photograd/frame/screen_rays.h"
 #include "photograd/frame/shadow_map.h"
 #include "photograd/frame/ssao.h"
 #include "photograd/frame/tone_map.h"
@@ -85,40 +88,44 @@ void add_bloom_backward(const py::array& color, double threshold, const py::arra
     });
 }
 
-/// intrinsics (fx, fy, cx, cy); settings as SsaoSettings orders them.
-template <class R>
-struct SsaoArguments {
-    SsaoFrame<R> frame;
-    SsaoSettings<R> settings;
+void check_count(const ArrayArgs& args, const char* name, int value, int most) {
+    if (value < 1 || value > most)
+        args.range(name, "1 to " + std::to_string(most), std::to_string(value));
+}
 
-    SsaoArguments(ArrayArgs& args, const py::array& inverse_depth, const py::array& normals,
-                  const std::array<double, 4>& intrinsics, const py::array& numbers, int samples) {
-        const R* w = args.in<R>("inverse_depth", inverse_depth, "H W");
-        const R* n = args.in<R>("normals", normals, "H W 3");
-        const R* s = args.in<R>("settings", numbers, "5");
-        if (samples < 1 || samples > max_ssao_samples)
-            args.range("samples", "1 to 256", std::to_string(samples));
-        frame = {args.size("H"),
-                 args.size("W"),
-                 R(intrinsics[0]),
-                 R(intrinsics[1]),
-                 R(intrinsics[2]),
-                 R(intrinsics[3]),
-                 w,
-                 n};
-        settings = {s[0], s[1], s[2], s[3], s[4]};
-    }
-};
+/// intrinsics (fx, fy, cx, cy).
+template <class R>
+ScreenFrame<R> screen_frame(ArrayArgs& args, const py::array& inverse_depth,
+                            const py::array& normals, const std::array<double, 4>& intrinsics) {
+    const R* w = args.in<R>("inverse_depth", inverse_depth, "H W");
+    const R* n = args.in<R>("normals", normals, "H W 3");
+    return {args.size("H"),
+            args.size("W"),
+            R(intrinsics[0]),
+            R(intrinsics[1]),
+            R(intrinsics[2]),
+            R(intrinsics[3]),
+            w,
+            n};
+}
+/// Numbers as SsaoSettings orders them.
+template <class R>
+SsaoSettings<R> ssao_settings(ArrayArgs& args, const py::array& numbers, int samples) {
+    const R* s = args.in<R>("settings", numbers, "5");
+    check_count(args, "samples", samples, max_ssao_samples);
+    return {s[0], s[1], s[2], s[3], s[4]};
+}
 
 void occlude(const py::array& inverse_depth, const py::array& normals,
              const std::array<double, 4>& intrinsics, const py::array& settings, int samples,
              py::array out) {
     dispatch_real("ssao", "inverse_depth", inverse_depth, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        const SsaoArguments<R> in(args, inverse_depth, normals, intrinsics, settings, samples);
+        const auto frame = screen_frame<R>(args, inverse_depth, normals, intrinsics);
+        const auto by = ssao_settings<R>(args, settings, samples);
         R* to = args.out<R>("out", out, "H W");
         const py::gil_scoped_release release;
-        ssao(in.frame, in.settings, samples, to);
+        ssao(frame, by, samples, to);
     });
 }
 void occlude_backward(const py::array& inverse_depth, const py::array& normals,
@@ -126,11 +133,61 @@ void occlude_backward(const py::array& inverse_depth, const py::array& normals,
                       int samples, const py::array& d_out, py::array d_settings) {
     dispatch_real("ssao_backward", "inverse_depth", inverse_depth, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        const SsaoArguments<R> in(args, inverse_depth, normals, intrinsics, settings, samples);
+        const auto frame = screen_frame<R>(args, inverse_depth, normals, intrinsics);
+        const auto by = ssao_settings<R>(args, settings, samples);
         const R* d = args.in<R>("d_out", d_out, "H W");
         R* d_in = args.out<R>("d_settings", d_settings, "5");
         const py::gil_scoped_release release;
-        ssao_backward(in.frame, in.settings, samples, d, d_in);
+        ssao_backward(frame, by, samples, d, d_in);
+    });
+}
+
+void occlude_horizons(const py::array& inverse_depth, const py::array& normals,
+                      const std::array<double, 4>& intrinsics, double radius, double falloff,
+                      int slices, int steps, py::array out) {
+    dispatch_real("horizon_occlusion", "inverse_depth", inverse_depth,
+                  [&](auto real, ArrayArgs& args) {
+                      using R = decltype(real);
+                      const auto frame = screen_frame<R>(args, inverse_depth, normals, intrinsics);
+                      check_count(args, "slices", slices, max_horizon_slices);
+                      check_count(args, "steps", steps, max_horizon_steps);
+                      R* to = args.out<R>("out", out, "H W");
+                      const py::gil_scoped_release release;
+                      horizon_occlusion(frame, {R(radius), R(falloff), slices, steps}, to);
+                  });
+}
+
+void follow_rays(const py::array& inverse_depth, const py::array& normals,
+                 const std::array<double, 4>& intrinsics, double length, double thickness,
+                 int steps, const py::array& wi, py::array hit) {
+    dispatch_real("follow_screen_rays", "inverse_depth", inverse_depth,
+                  [&](auto real, ArrayArgs& args) {
+                      using R = decltype(real);
+                      const auto frame = screen_frame<R>(args, inverse_depth, normals, intrinsics);
+                      const R* direction = args.in<R>("wi", wi, "H W 3");
+                      std::int32_t* to = args.out<std::int32_t>("hit", hit, "H W");
+                      check_count(args, "steps", steps, max_screen_steps);
+                      const py::gil_scoped_release release;
+                      follow_screen_rays(frame, {R(length), R(thickness), steps}, direction, to);
+                  });
+}
+
+/// centers, disk_normals (E, 3), areas, parts (E,) float64.
+void occlude_by_disks(const py::array& centers, const py::array& disk_normals,
+                      const py::array& areas, const py::array& parts, double opening, double radius,
+                      const py::array& points, const py::array& normals, py::array visible) {
+    dispatch_real("disk_occlusion", "points", points, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const double* c = args.in<double>("centers", centers, "E 3");
+        const double* n = args.in<double>("disk_normals", disk_normals, "E 3");
+        const double* a = args.in<double>("areas", areas, "E");
+        const double* by = args.in<double>("parts", parts, "E");
+        const R* at = args.in<R>("points", points, "N 3");
+        const R* facing = args.in<R>("normals", normals, "N 3");
+        R* to = args.out<R>("visible", visible, "N");
+        const std::int64_t disks = args.size("E"), count = args.size("N");
+        const py::gil_scoped_release release;
+        DiskTree({disks, c, n, a}).look_up(by, opening, radius, count, at, facing, to);
     });
 }
 
@@ -179,6 +236,16 @@ void bind_frame(py::module_& m) {
     m.def("ssao_backward", &occlude_backward, py::arg("inverse_depth"), py::arg("normals"),
           py::arg("intrinsics"), py::arg("settings"), py::arg("samples"), py::arg("d_out"),
           py::arg("d_settings"), "Adds to d_settings.");
+    m.def("horizon_occlusion", &occlude_horizons, py::arg("inverse_depth"), py::arg("normals"),
+          py::arg("intrinsics"), py::arg("radius"), py::arg("falloff"), py::arg("slices"),
+          py::arg("steps"), py::arg("out"));
+    m.def("follow_screen_rays", &follow_rays, py::arg("inverse_depth"), py::arg("normals"),
+          py::arg("intrinsics"), py::arg("length"), py::arg("thickness"), py::arg("steps"),
+          py::arg("wi"), py::arg("hit"),
+          "hit (H, W) int32: a pixel, -1 for a ray that meets nothing, -2 for one that leaves.");
+    m.def("disk_occlusion", &occlude_by_disks, py::arg("centers"), py::arg("disk_normals"),
+          py::arg("areas"), py::arg("parts"), py::arg("opening"), py::arg("radius"),
+          py::arg("points"), py::arg("normals"), py::arg("visible"));
     m.def("shadow_lookup", &look_up_shadow, py::arg("depths"), py::arg("pixels_from_world"),
           py::arg("radius"), py::arg("depth_bias"), py::arg("normal_bias"), py::arg("texel"),
           py::arg("points"), py::arg("normals"), py::arg("visibility"));

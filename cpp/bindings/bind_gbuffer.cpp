@@ -68,6 +68,15 @@ void fill(const SceneRows& rows, const py::tuple& camera_numbers, const py::arra
     });
 }
 
+/// Refuses numbers of materials that the scene has not.
+template <class R>
+void check_materials(const ArrayArgs& args, const SceneNumbers<R>& numbers, const GBuffer<R>& in) {
+    for (std::int64_t i = 0; i < args.size("N"); ++i)
+        if (in.material[i] >= static_cast<std::int32_t>(numbers.materials.size()))
+            args.range("material", "numbers below " + std::to_string(numbers.materials.size()),
+                       std::to_string(in.material[i]));
+}
+
 void light(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
            const py::array& wi, const py::array& irradiance, py::array out) {
     dispatch_real("light_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
@@ -78,13 +87,44 @@ void light(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArray
         const R* arriving = args.in<R>("irradiance", irradiance, "N 3");
         R* to = args.out<R>("out", out, "N 3");
         const std::int64_t count = args.size("N");
-        for (std::int64_t i = 0; i < count; ++i)
-            if (in.material[i] >= static_cast<std::int32_t>(numbers.materials.size()))
-                args.range("material", "numbers below " + std::to_string(numbers.materials.size()),
-                           std::to_string(in.material[i]));
+        check_materials(args, numbers, in);
         const Vec3<R> from{R(eye[0]), R(eye[1]), R(eye[2])};
         const py::gil_scoped_release release;
         light_gbuffer(numbers.scene, from, count, in, direction, arriving, to);
+    });
+}
+
+void sample(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
+            const py::array& u, py::array wi, py::array weight, py::array pdf) {
+    dispatch_real("sample_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const SceneNumbers<R> numbers(args, rows);
+        const GBuffer<R> in = gbuffer_of<R>(args, gbuffer);
+        const R* uniform = args.in<R>("u", u, "N 3");
+        R* direction = args.out<R>("wi", wi, "N 3");
+        R* by = args.out<R>("weight", weight, "N 3");
+        R* density = args.out<R>("pdf", pdf, "N");
+        check_materials(args, numbers, in);
+        const std::int64_t count = args.size("N");
+        const Vec3<R> from{R(eye[0]), R(eye[1]), R(eye[2])};
+        const py::gil_scoped_release release;
+        sample_gbuffer(numbers.scene, from, count, in, uniform, direction, by, density);
+    });
+}
+
+void find_pdf(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
+              const py::array& wi, py::array pdf) {
+    dispatch_real("gbuffer_pdf", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const SceneNumbers<R> numbers(args, rows);
+        const GBuffer<R> in = gbuffer_of<R>(args, gbuffer);
+        const R* direction = args.in<R>("wi", wi, "N 3");
+        R* density = args.out<R>("pdf", pdf, "N");
+        check_materials(args, numbers, in);
+        const std::int64_t count = args.size("N");
+        const Vec3<R> from{R(eye[0]), R(eye[1]), R(eye[2])};
+        const py::gil_scoped_release release;
+        gbuffer_pdf(numbers.scene, from, count, in, direction, density);
     });
 }
 
@@ -98,6 +138,11 @@ void bind_gbuffer(py::module_& m) {
               "-1 sees nothing.");
         m.def("light_gbuffer", of_scene(&light), scene..., py::arg("eye"), py::arg("gbuffer"),
               py::arg("wi"), py::arg("irradiance"), py::arg("out"), "Adds to out (N, 3).");
+        m.def("sample_gbuffer", of_scene(&sample), scene..., py::arg("eye"), py::arg("gbuffer"),
+              py::arg("u"), py::arg("wi"), py::arg("weight"), py::arg("pdf"),
+              "weight (N, 3) is f cos / pdf; pdf (N,) is 0 of specular surfaces.");
+        m.def("gbuffer_pdf", of_scene(&find_pdf), scene..., py::arg("eye"), py::arg("gbuffer"),
+              py::arg("wi"), py::arg("pdf"));
     });
 }
 

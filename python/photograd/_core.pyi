@@ -63,6 +63,7 @@ __all__: list[str] = [
     "dipole_albedo",
     "dipole_albedo_backward",
     "dipole_backward",
+    "disk_occlusion",
     "disk_to_square",
     "dual_buffer_backward",
     "emit_particles",
@@ -70,10 +71,13 @@ __all__: list[str] = [
     "expm1",
     "fields",
     "fill_gbuffer",
+    "follow_screen_rays",
     "frequency_encode",
     "frequency_encode_backward",
+    "gbuffer_pdf",
     "hash_encode",
     "hash_encode_backward",
+    "horizon_occlusion",
     "instruction_set",
     "interpolate",
     "interpolate_backward",
@@ -122,6 +126,7 @@ __all__: list[str] = [
     "sample_bricks_backward",
     "sample_diffusion_radius",
     "sample_diffusion_radius_backward",
+    "sample_gbuffer",
     "sample_mips",
     "sample_mips_backward",
     "sample_weights",
@@ -1488,6 +1493,17 @@ def dipole_backward(rows: numpy.ndarray, d_values: numpy.ndarray, d_rows: numpy.
     Adds to d_rows (N, 4) for d_values (N,).
     """
 
+def disk_occlusion(
+    centers: numpy.ndarray,
+    disk_normals: numpy.ndarray,
+    areas: numpy.ndarray,
+    parts: numpy.ndarray,
+    opening: typing.SupportsFloat | typing.SupportsIndex,
+    radius: typing.SupportsFloat | typing.SupportsIndex,
+    points: numpy.ndarray,
+    normals: numpy.ndarray,
+    visible: numpy.ndarray,
+) -> None: ...
 def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     """
     The inverse of square_to_disk.
@@ -1574,6 +1590,22 @@ def fill_gbuffer(
     Writes the arrays of gbuffer; shape (N,) counts instances of meshes, then spheres; -1 sees nothing.
     """
 
+def follow_screen_rays(
+    inverse_depth: numpy.ndarray,
+    normals: numpy.ndarray,
+    intrinsics: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+    length: typing.SupportsFloat | typing.SupportsIndex,
+    thickness: typing.SupportsFloat | typing.SupportsIndex,
+    steps: typing.SupportsInt | typing.SupportsIndex,
+    wi: numpy.ndarray,
+    hit: numpy.ndarray,
+) -> None:
+    """
+    hit (H, W) int32: a pixel, -1 for a ray that meets nothing, -2 for one that leaves.
+    """
+
 def frequency_encode(
     points: numpy.ndarray,
     octaves: typing.SupportsInt | typing.SupportsIndex,
@@ -1584,6 +1616,23 @@ def frequency_encode_backward(
     octaves: typing.SupportsInt | typing.SupportsIndex,
     d_features: numpy.ndarray,
     d_points: numpy.ndarray,
+) -> None: ...
+def gbuffer_pdf(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    eye: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    gbuffer: collections.abc.Mapping[str, numpy.ndarray],
+    wi: numpy.ndarray,
+    pdf: numpy.ndarray,
 ) -> None: ...
 def hash_encode(
     settings: HashSettings, table: numpy.ndarray, points: numpy.ndarray, features: numpy.ndarray
@@ -1604,6 +1653,18 @@ def hash_encode_backward(
     Adds to d_table, and to d_points unless None.
     """
 
+def horizon_occlusion(
+    inverse_depth: numpy.ndarray,
+    normals: numpy.ndarray,
+    intrinsics: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+    radius: typing.SupportsFloat | typing.SupportsIndex,
+    falloff: typing.SupportsFloat | typing.SupportsIndex,
+    slices: typing.SupportsInt | typing.SupportsIndex,
+    steps: typing.SupportsInt | typing.SupportsIndex,
+    out: numpy.ndarray,
+) -> None: ...
 def instruction_set() -> str:
     """
     Name of the kernels in use: baseline, v3 or v4.
@@ -2074,6 +2135,29 @@ def sample_diffusion_radius_backward(
 ) -> None:
     """
     Adds to d_rows (N, 3) for d_values (N,).
+    """
+
+def sample_gbuffer(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    eye: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    gbuffer: collections.abc.Mapping[str, numpy.ndarray],
+    u: numpy.ndarray,
+    wi: numpy.ndarray,
+    weight: numpy.ndarray,
+    pdf: numpy.ndarray,
+) -> None:
+    """
+    weight (N, 3) is f cos / pdf; pdf (N,) is 0 of specular surfaces.
     """
 
 def sample_mips(

@@ -46,6 +46,17 @@ def test_forward_shading_makes_the_same_picture(photograd: Photograd, tmp_path: 
     np.testing.assert_allclose(pictures[0], pictures[1], atol=1e-5)
 
 
+def test_fog_and_gathered_light_are_asked_for(photograd: Photograd, tmp_path: Path) -> None:
+    pictures = []
+    for words in ((), ("--gather", 2), ("--fog", 0.2, "--fog-color", "0,0,0")):
+        out = tmp_path / f"{len(pictures)}.exr"
+        done = photograd("frame", "cornell-box", *FAST, *words, "--out", out)
+        assert done.code == 0, done.err
+        pictures.append(read_exr(out)[..., :3])
+    assert pictures[1].mean() > 1.02 * pictures[0].mean()  # walls light one another
+    assert pictures[2].mean() < 0.9 * pictures[0].mean()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -53,6 +64,9 @@ def test_forward_shading_makes_the_same_picture(photograd: Photograd, tmp_path: 
         (("--against", "photons"), "--against: expected 'path'"),
         (("--tone-curve", "filmic"), "--tone-curve: expected one of reinhard, aces, agx"),
         (("--shading", "later"), "--shading: expected one of deferred, forward"),
+        (("--sky-visibility", "rays"), "--sky-visibility: expected one of occlusion, horizon"),
+        (("--transparency", "no"), "--transparency: expected one of peeled, sorted, weighted"),
+        (("--fog-color", "red"), "--fog-color: expected three numbers R,G,B"),
         (("--out", "frame.jpg"), "frame.jpg"),
     ],
 )

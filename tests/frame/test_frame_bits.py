@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,10 @@ from photograd.frame import (
     ssao_backward,
     tone_map_backward,
 )
+from photograd.frame.options import SkyVisibility, Transparency
+from photograd.transport import Material
+from photograd.transport.scene import Environment
+from photograd.transport.shapes import rectangle
 
 from support.bits import same_bits
 from tests.frame import scenes
@@ -25,7 +30,6 @@ def everything() -> list[Any]:
     scene = scenes.room(scenes.LIGHTS["point"])
     options = FrameOptions(
         sky_directions=0,
-        sky_visibility="occlusion",
         shadows=ShadowSettings(size=200),
         bloom_weights=(0.1, 0.1),
         tone_curve="agx",
@@ -40,3 +44,30 @@ def everything() -> list[Any]:
     shadow = result["shadows"]["lights.0"].depths
     buffers = [visible.position, visible.shading, shadow, result["direct"], result["display"]]
     return [*buffers, *occlusion.values(), *spread, tones[0], *tones[1].values()]
+
+
+@same_bits("frame of a sky")
+def under_a_sky() -> list[Any]:
+    """What hides a sky, light that is gathered, and surfaces that cover in part, in fog."""
+    sky = Environment([0.6, 0.8, 1.0], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2])
+    veil = Material("lambert", {"albedo": [0.8, 0.2, 0.1], "alpha": 0.5})
+    scene = scenes.room(scenes.LIGHTS["directional"], environment=sky)
+    sheet = rectangle("veil", [-1, 0, 0.6], [2, 0, 0], [0, 1, 0], "veil", [0, 0, 0])
+    scene = replace(
+        scene, shapes=(*scene.shapes, sheet), materials={**scene.materials, "veil": veil}
+    )
+    ready, made = FrameScene(scene), []
+    visibilities: tuple[SkyVisibility, ...] = ("horizon", "disks", "directional", "shadow_maps")
+    blends: tuple[Transparency, ...] = ("peeled", "sorted", "weighted", "peeled")
+    for visibility, transparency in zip(visibilities, blends, strict=True):
+        options = FrameOptions(
+            sky_directions=4,
+            sky_visibility=visibility,
+            gather_samples=2,
+            transparency=transparency,
+            fog=0.1,
+            shadows=ShadowSettings(size=100),
+        )
+        found = frame_graph(ready, options).run({"camera": scene.camera})
+        made += [found[name] for name in ("occlusion", "sky_light", "gathered", "display")]
+    return made

@@ -10,6 +10,7 @@ import pytest
 from photograd.errors import RangeError
 from photograd.frame import FrameOptions, FrameScene, frame_graph
 from photograd.transport.lens import Lens
+from photograd.transport.scene import Environment
 
 from tests.frame import scenes
 
@@ -26,7 +27,7 @@ def displayed(options: FrameOptions, lens: Lens | None = None) -> Any:
 
 def test_a_plain_frame_shows_its_radiance() -> None:
     found = displayed(PLAIN)
-    for name in ("layered", "focused", "radiance", "bloom", "lens", "toned"):
+    for name in ("opaque", "layered", "fogged", "focused", "radiance", "bloom", "lens", "toned"):
         np.testing.assert_array_equal(found[name], found["display"])
 
 
@@ -50,7 +51,37 @@ def test_an_option_changes_what_its_pass_makes(
     assert found["radiance"].shape == found["display"].shape == (64, 96, 3)
 
 
+@pytest.mark.parametrize("visibility", ["occlusion", "horizon", "disks", "directional"])
+def test_each_technique_hides_some_of_the_sky(visibility: Any) -> None:
+    """Light under a sky is between that of nothing hidden and half of it."""
+    sky = Environment([0.6, 0.8, 1.0], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2])
+    scene = replace(scenes.room(None), environment=sky, camera=scenes.camera(48, 32))
+    found = {
+        name: frame_graph(FrameScene(scene), FrameOptions(sky_directions=16, sky_visibility=name))
+        .run({"camera": scene.camera}, ["sky_light", "gbuffer"])
+        .buffers
+        for name in ("none", visibility)
+    }
+    covered = found["none"]["gbuffer"].covered
+    part = found[visibility]["sky_light"][covered] / found["none"]["sky_light"][covered]
+    assert 0.5 < part.mean() < 0.99
+    assert part.max() < 1.0 + 1e-5
+    assert part.min() < 0.75
+
+
+def test_fog_hides_the_background() -> None:
+    found = displayed(replace(PLAIN, fog=0.5, fog_color=(0.2, 0.3, 0.4)))
+    covered = found["visibility"].covered
+    assert np.abs(found["fogged"][~covered] - [0.2, 0.3, 0.4]).max() < 1e-6
+    assert (found["fogged"] != found["layered"])[covered].any()
+
+
 def test_options_out_of_range_are_refused() -> None:
-    for wrong in ({"layers": 65}, {"vignette": 2.0}, {"shading": "later"}, {"exposure": np.nan}):
+    wrong_ones: tuple[dict[str, Any], ...] = (
+        *({"layers": 65}, {"vignette": 2.0}, {"shading": "later"}, {"exposure": np.nan}),
+        *({"sky_visibility": "rays"}, {"transparency": "none"}, {"fog": -1.0}),
+        *({"gather_samples": -1}, {"disk_edge": 0.0}),
+    )
+    for wrong in wrong_ones:
         with pytest.raises(RangeError, match="FrameOptions: "):
             FrameOptions(**wrong)

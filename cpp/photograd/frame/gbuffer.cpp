@@ -2,6 +2,7 @@
 
 #include "photograd/frame/chunk_sums.h"
 #include "photograd/render/path/lane.h"
+#include "photograd/render/path/scatter.h"
 
 namespace photograd {
 namespace {
@@ -74,6 +75,28 @@ Vec3<R> reflected(const Material<R>& material, const SurfaceSide<R>& side, const
     return material.f(side.wo, local) * std::abs(local.z);
 }
 
+/// visit(i, material, side) for each pixel that shows a surface and is `wanted`.
+template <Real R, class Wanted, class Visit>
+void for_surfaces(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                  const GBuffer<R>& in, Wanted&& wanted, Visit&& visit) {
+    for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
+        for (std::int64_t i = first; i < last; ++i) {
+            if (in.material[i] < 0 || !wanted(i)) continue;
+            const SurfaceSide<R> side = side_of(in, i, normalize(eye - vector_at(in.position, i)));
+            const Material<R>& shared = scene.materials[static_cast<std::size_t>(in.material[i])];
+            if (in.row_size == 0) {
+                visit(i, shared, side);
+            } else {
+                Material<R> own = shared;
+                own.set(in.rows + i * in.row_size);
+                visit(i, own, side);
+            }
+        }
+    });
+}
+
+constexpr auto everywhere = [](std::int64_t) { return true; };
+
 }  // namespace
 
 template <Real R>
@@ -100,25 +123,40 @@ void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const std::i
 template <Real R>
 void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
                    const GBuffer<R>& in, const R* wi, const R* irradiance, R* out) {
-    for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
-        for (std::int64_t i = first; i < last; ++i) {
-            const Vec3<R> arriving = vector_at(irradiance, i);
-            if (in.material[i] < 0 ||
-                !(arriving.x != R(0) || arriving.y != R(0) || arriving.z != R(0)))
-                continue;
-            const SurfaceSide<R> side = side_of(in, i, normalize(eye - vector_at(in.position, i)));
-            const Material<R>& shared = scene.materials[static_cast<std::size_t>(in.material[i])];
-            Vec3<R> light;
-            if (in.row_size == 0) {
-                light = reflected(shared, side, vector_at(wi, i));
-            } else {
-                Material<R> own = shared;
-                own.set(in.rows + i * in.row_size);
-                light = reflected(own, side, vector_at(wi, i));
-            }
-            put(out, i, vector_at(out, i) + light * arriving);
-        }
-    });
+    const auto lit = [&](std::int64_t i) { return vector_at(irradiance, i) != Vec3<R>(R(0)); };
+    for_surfaces(scene, eye, count, in, lit,
+                 [&](std::int64_t i, const Material<R>& material, const SurfaceSide<R>& side) {
+                     const Vec3<R> light = reflected(material, side, vector_at(wi, i));
+                     put(out, i, vector_at(out, i) + light * vector_at(irradiance, i));
+                 });
+}
+
+template <Real R>
+void sample_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                    const GBuffer<R>& in, const R* u, R* wi, R* weight, R* pdf) {
+    std::fill_n(wi, 3 * count, R(0));
+    std::fill_n(weight, 3 * count, R(0));
+    std::fill_n(pdf, count, R(0));
+    for_surfaces(scene, eye, count, in, everywhere,
+                 [&](std::int64_t i, const Material<R>& material, const SurfaceSide<R>& side) {
+                     const Vec3<R> numbers = vector_at(u, i);
+                     const Continuation<R> found = sample_bsdf(
+                         material, side, {numbers.x, numbers.y}, numbers.z, Vec3<R>(R(1)));
+                     put(wi, i, found.direction);
+                     put(weight, i, found.value * found.weight);
+                     pdf[i] = found.sample.lobe < 0 ? found.sample.pdf : R(0);
+                 });
+}
+
+template <Real R>
+void gbuffer_pdf(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                 const GBuffer<R>& in, const R* wi, R* pdf) {
+    std::fill_n(pdf, count, R(0));
+    for_surfaces(scene, eye, count, in, everywhere,
+                 [&](std::int64_t i, const Material<R>& material, const SurfaceSide<R>& side) {
+                     const Vec3<R> local = side.frame.to_local(vector_at(wi, i));
+                     if (!material.is_specular()) pdf[i] = material.pdf(side.wo, local);
+                 });
 }
 
 template void fill_gbuffer(const PathScene<float>&, const Pinhole&, const std::int32_t*,
@@ -129,5 +167,14 @@ template void light_gbuffer(const PathScene<float>&, const Vec3<float>&, std::in
                             const GBuffer<float>&, const float*, const float*, float*);
 template void light_gbuffer(const PathScene<double>&, const Vec3<double>&, std::int64_t,
                             const GBuffer<double>&, const double*, const double*, double*);
+
+template void sample_gbuffer(const PathScene<float>&, const Vec3<float>&, std::int64_t,
+                             const GBuffer<float>&, const float*, float*, float*, float*);
+template void gbuffer_pdf(const PathScene<float>&, const Vec3<float>&, std::int64_t,
+                          const GBuffer<float>&, const float*, float*);
+template void sample_gbuffer(const PathScene<double>&, const Vec3<double>&, std::int64_t,
+                             const GBuffer<double>&, const double*, double*, double*, double*);
+template void gbuffer_pdf(const PathScene<double>&, const Vec3<double>&, std::int64_t,
+                          const GBuffer<double>&, const double*, double*);
 
 }  // namespace photograd

@@ -31,4 +31,16 @@ template <Real R>
 void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
                    const GBuffer<R>& in, const R* wi, const R* irradiance, R* out);
 
+/// Directions that the reflectance of the surfaces would choose, from u (N, 3): wi (N, 3), weight
+/// f cos / pdf (N, 3), and pdf (N,), per steradian, 0 of specular surfaces. Weight 0 where a sample
+/// fails.
+template <Real R>
+void sample_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                    const GBuffer<R>& in, const R* u, R* wi, R* weight, R* pdf);
+
+/// The density (N,) with which `sample_gbuffer` chooses wi (N, 3).
+template <Real R>
+void gbuffer_pdf(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                 const GBuffer<R>& in, const R* wi, R* pdf);
+
 }  // namespace photograd

@@ -6,11 +6,10 @@
 #include "photograd/core/sincos.h"
 #include "photograd/frame/chunk_sums.h"
 #include "photograd/ops/obscurance.h"
+#include "photograd/sampling/warp.h"
 
 namespace photograd {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Directions and distances of the samples, before they are turned and scaled.
 template <class R>
@@ -31,38 +30,10 @@ struct Spiral {
             alpha[at] = pow(base, distribution);
             alpha_by_distribution[at] = alpha[at] * log(base);
         }
-        // Of a square of 4 x 4, neighbors far apart.
-        constexpr int order[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
         for (std::size_t k = 0; k < 16; ++k) {
-            const auto [s, c] = sin_cos(R(2 * pi * order[k] / 16 - pi));
+            const auto [s, c] = sin_cos(R(2 * pi * double(k) / 16 - pi));
             turn_cosine[k] = c, turn_sine[k] = s;
         }
-    }
-};
-
-/// 1 / depth and its slopes, clamped to the frame.
-template <class R>
-struct Lookup {
-    R value, by_x, by_y;
-
-    static Lookup at(const SsaoFrame<R>& frame, R x, R y) {
-        const R fx = std::clamp(x - R(0.5), R(0), R(frame.width - 1));
-        const R fy = std::clamp(y - R(0.5), R(0), R(frame.height - 1));
-        const auto x0 =
-            std::min(static_cast<std::int64_t>(fx), std::max<std::int64_t>(frame.width - 2, 0));
-        const auto y0 =
-            std::min(static_cast<std::int64_t>(fy), std::max<std::int64_t>(frame.height - 2, 0));
-        const std::int64_t x1 = std::min(x0 + 1, frame.width - 1);
-        const std::int64_t y1 = std::min(y0 + 1, frame.height - 1);
-        const R tx = fx - R(x0), ty = fy - R(y0);
-        const auto w = [&](std::int64_t row, std::int64_t column) {
-            return frame.inverse_depth[row * frame.width + column];
-        };
-        const R top = w(y0, x0) + tx * (w(y0, x1) - w(y0, x0));
-        const R bottom = w(y1, x0) + tx * (w(y1, x1) - w(y1, x0));
-        const R along = (R(1) - ty) * (w(y0, x1) - w(y0, x0)) + ty * (w(y1, x1) - w(y1, x0));
-        const bool inside_x = fx == x - R(0.5), inside_y = fy == y - R(0.5);
-        return {top + ty * (bottom - top), inside_x ? along : R(0), inside_y ? bottom - top : R(0)};
     }
 };
 
@@ -70,33 +41,32 @@ struct Lookup {
 template <class R>
 class SampledPixel {
 public:
-    SampledPixel(const SsaoFrame<R>& frame, const Spiral<R>& spiral,
+    SampledPixel(const ScreenFrame<R>& frame, const Spiral<R>& spiral,
                  const SsaoSettings<R>& settings, std::int64_t x, std::int64_t y)
         : frame_(frame),
           spiral_(spiral),
           settings_(settings),
           x_(R(x) + R(0.5)),
           y_(R(y) + R(0.5)),
-          turn_(static_cast<std::size_t>(4 * (y % 4) + x % 4)) {
+          turn_(static_cast<std::size_t>(turn_of_pixel(x, y))) {
         const std::int64_t i = y * frame.width + x;
         w_ = frame.inverse_depth[i];
-        point_ = ray(x_, y_) * (R(1) / w_);
-        const R* n = frame.normals + 3 * i;
-        normal_ = {n[0], n[1], n[2]};
+        point_ = frame.ray(x_, y_) * (R(1) / w_);
+        normal_ = frame.normal(i);
     }
     R sample(int i) const {
         const Tap tap = tap_of(i);
-        const Lookup<R> at = Lookup<R>::at(frame_, tap.x, tap.y);
+        const InverseDepth<R> at = InverseDepth<R>::at(frame_, tap.x, tap.y);
         if (!(at.value > R(0))) return R(0);
-        return obscurance(ray(tap.x, tap.y) * (R(1) / at.value) - point_, normal_, by());
+        return obscurance(frame_.ray(tap.x, tap.y) * (R(1) / at.value) - point_, normal_, by());
     }
     /// Adds to d, all but the strength.
     void sample_backward(int i, R d_a, SsaoSettings<R>& d) const {
         const Tap tap = tap_of(i);
-        const Lookup<R> at = Lookup<R>::at(frame_, tap.x, tap.y);
+        const InverseDepth<R> at = InverseDepth<R>::at(frame_, tap.x, tap.y);
         if (!(at.value > R(0))) return;
         const R over = R(1) / at.value;
-        const Vec3<R> r = ray(tap.x, tap.y);
+        const Vec3<R> r = frame_.ray(tap.x, tap.y);
         Vec3<R> d_v(R(0));
         Obscurance<R> d_by{R(0), R(0), R(0)};
         obscurance_backward(r * over - point_, normal_, by(), d_a, d_v, d_by);
@@ -117,9 +87,6 @@ private:
         R x, y, along_x, along_y;
     };
     Obscurance<R> by() const { return {settings_.radius, settings_.falloff, settings_.bias}; }
-    Vec3<R> ray(R x, R y) const {
-        return {(x - frame_.cx) / frame_.fx, (y - frame_.cy) / frame_.fy, R(1)};
-    }
     Tap tap_of(int i) const {
         const auto k = static_cast<std::size_t>(i);
         const R c = spiral_.cosine[k] * spiral_.turn_cosine[turn_] -
@@ -131,7 +98,7 @@ private:
         return {x_ + reach * along_x, y_ + reach * along_y, along_x, along_y};
     }
 
-    const SsaoFrame<R>& frame_;
+    const ScreenFrame<R>& frame_;
     const Spiral<R>& spiral_;
     const SsaoSettings<R>& settings_;
     R x_, y_, w_;
@@ -140,7 +107,7 @@ private:
 };
 
 template <Real R>
-void occlude_pixels(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
+void occlude_pixels(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
                     R* out) {
     const Spiral<R> spiral(samples, settings.distribution);
     parallel_for(frame.height, [&](std::int64_t y) {
@@ -157,7 +124,7 @@ void occlude_pixels(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, 
 }
 
 template <Real R>
-void occlude_pixels_backward(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings,
+void occlude_pixels_backward(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings,
                              int samples, const R* d_out, R* d_settings) {
     const Spiral<R> spiral(samples, settings.distribution);
     add_chunk_sums(frame.height * frame.width, 5, d_settings,
@@ -181,20 +148,20 @@ void occlude_pixels_backward(const SsaoFrame<R>& frame, const SsaoSettings<R>& s
 }  // namespace
 
 template <Real R>
-void ssao(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, int samples, R* out) {
+void ssao(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples, R* out) {
     occlude_pixels(frame, settings, samples, out);
 }
 template <Real R>
-void ssao_backward(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
+void ssao_backward(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
                    const R* d_out, R* d_settings) {
     occlude_pixels_backward(frame, settings, samples, d_out, d_settings);
 }
 
-template void ssao(const SsaoFrame<float>&, const SsaoSettings<float>&, int, float*);
-template void ssao(const SsaoFrame<double>&, const SsaoSettings<double>&, int, double*);
-template void ssao_backward(const SsaoFrame<float>&, const SsaoSettings<float>&, int, const float*,
-                            float*);
-template void ssao_backward(const SsaoFrame<double>&, const SsaoSettings<double>&, int,
+template void ssao(const ScreenFrame<float>&, const SsaoSettings<float>&, int, float*);
+template void ssao(const ScreenFrame<double>&, const SsaoSettings<double>&, int, double*);
+template void ssao_backward(const ScreenFrame<float>&, const SsaoSettings<float>&, int,
+                            const float*, float*);
+template void ssao_backward(const ScreenFrame<double>&, const SsaoSettings<double>&, int,
                             const double*, double*);
 
 }  // namespace photograd

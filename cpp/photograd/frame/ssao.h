@@ -10,9 +10,7 @@
 // is not limited from below. It is continuous in all numbers, and so has whole derivatives.
 #pragma once
 
-#include <cstdint>
-
-#include "photograd/core/real.h"
+#include "photograd/frame/screen.h"
 
 namespace photograd {
 
@@ -23,22 +21,13 @@ struct SsaoSettings {
     R radius, falloff, bias, distribution, strength;
 };
 
-/// inverse_depth (H, W), 0 where nothing is seen, and unit normals (H, W, 3), both of the camera;
-/// fx, fy, cx, cy in pixels.
-template <class R>
-struct SsaoFrame {
-    std::int64_t height, width;
-    R fx, fy, cx, cy;
-    const R *inverse_depth, *normals;
-};
-
 /// out (H, W), 1 where nothing is seen.
 template <Real R>
-void ssao(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, int samples, R* out);
+void ssao(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples, R* out);
 
 /// Adds to d_settings, in the order of SsaoSettings.
 template <Real R>
-void ssao_backward(const SsaoFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
+void ssao_backward(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
                    const R* d_out, R* d_settings);
 
 }  // namespace photograd

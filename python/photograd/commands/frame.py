@@ -4,87 +4,49 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 from photograd_course.color import srgb_encode
 
-from photograd._checks import typed
-from photograd.commands.shared import (
-    DepthOption,
-    SppOption,
-    check_output_name,
-    out_option,
-    use_threads,
+from photograd.commands.frame_options import (
+    AberrationOption,
+    AgainstOption,
+    BloomOption,
+    DirectionsOption,
+    ExposureOption,
+    FocusOption,
+    FogColorOption,
+    FogOption,
+    FxaaOption,
+    GatherOption,
+    OutOption,
+    PointsOption,
+    ShadingOption,
+    ShadowSizeOption,
+    ShowOption,
+    SkyOption,
+    SupersamplingOption,
+    ToneOption,
+    TransparencyOption,
+    VignetteOption,
+    options_of,
 )
+from photograd.commands.shared import DepthOption, SppOption, check_output_name, use_threads
 from photograd.commands.trace import CameraOption, SceneArgument, SizeOption, load_scene
 from photograd.errors import RangeError, message
 from photograd.frame.against import Comparison, compare_with_paths
 from photograd.frame.graph import FrameResult
-from photograd.frame.options import FrameOptions, Shading, SkyVisibility
+from photograd.frame.options import FrameOptions
 from photograd.frame.panels import PANELS, panels
 from photograd.frame.pipeline import frame_graph
 from photograd.frame.scene import KINDS, FrameScene
-from photograd.frame.shadows import ShadowSettings
-from photograd.frame.tone_mapping import TONE_CURVES, ToneCurve
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.write import write_png, write_radiance
 from photograd.transport.scene import Scene
 from photograd.types import Array
-
-OutOption = Annotated[
-    Path, out_option("The picture: .exr, .hdr or .pfm of radiance, with a .png beside it, or .png.")
-]
-ShowOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--show",
-        metavar="BUFFER",
-        help=f"Write a buffer beside the picture, or 'all': {', '.join(PANELS)}. May be repeated.",
-    ),
-]
-AgainstOption = Annotated[
-    str, typer.Option("--against", help="'path' compares each kind of light with path tracing.")
-]
-ShadingOption = Annotated[str, typer.Option("--shading", help="deferred or forward.")]
-SkyOption = Annotated[
-    str,
-    typer.Option(
-        "--sky-visibility",
-        help="What hides the sky: occlusion (in screen space), shadow_maps, none.",
-    ),
-]
-PointsOption = Annotated[
-    int, typer.Option("--surface-points", min=0, help="Points that stand for surfaces that emit.")
-]
-DirectionsOption = Annotated[
-    int, typer.Option("--sky-directions", min=0, help="Directions that stand for a sky.")
-]
-ShadowSizeOption = Annotated[
-    int, typer.Option("--shadow-size", min=1, max=16384, help="Texels of a shadow map's edge.")
-]
-SupersamplingOption = Annotated[
-    int, typer.Option("--supersampling", min=1, max=16, help="Samples along a pixel's edge.")
-]
-ToneOption = Annotated[str, typer.Option("--tone-curve", help=f"none, {', '.join(TONE_CURVES)}.")]
-ExposureOption = Annotated[float, typer.Option("--exposure", help="In stops.")]
-BloomOption = Annotated[
-    float, typer.Option("--bloom", min=0.0, max=1.0, help="Part of the light that spreads.")
-]
-FocusOption = Annotated[
-    int,
-    typer.Option("--depth-of-field", min=0, help="Samples of the lens's blur a pixel; 0 for none."),
-]
-AberrationOption = Annotated[
-    float, typer.Option("--aberration", help="Relative difference of the sizes of red and blue.")
-]
-VignetteOption = Annotated[
-    float, typer.Option("--vignette", min=0.0, max=1.0, help="Part of the natural vignetting.")
-]
-FxaaOption = Annotated[bool, typer.Option("--fxaa", help="Blend across edges afterwards.")]
-BLOOM_LEVELS = 6
 
 
 def register(app: typer.Typer) -> None:
@@ -106,6 +68,10 @@ def frame(
     surface_points: PointsOption = 16,
     sky_directions: DirectionsOption = 32,
     shadow_size: ShadowSizeOption = 1024,
+    gather: GatherOption = 0,
+    transparency: TransparencyOption = "peeled",
+    fog: FogOption = 0.0,
+    fog_color: FogColorOption = "0.5,0.5,0.5",
     supersampling: SupersamplingOption = 1,
     tone_curve: ToneOption = "none",
     exposure: ExposureOption = 0.0,
@@ -117,7 +83,7 @@ def frame(
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
-    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+    debug: DebugOption = False,
 ) -> None:
     """Draw a scene as a real-time engine does: rasterized, lit pass by pass.
 
@@ -128,25 +94,11 @@ def frame(
 
     Example: photograd frame cornell-box --show gbuffer --against path --out frame.png
     """
+    options = options_of(locals())
     use_threads(threads)
     check_output_name("frame", out)
     if against not in ("", "path"):
         raise RangeError(message("frame", "--against", "'path'", against))
-    options = FrameOptions(
-        shading=typed("frame", "--shading", Shading, shading),
-        surface_points=surface_points,
-        sky_directions=sky_directions,
-        sky_visibility=typed("frame", "--sky-visibility", SkyVisibility, sky_visibility),
-        shadows=ShadowSettings(size=shadow_size),
-        supersampling=supersampling,
-        bloom_weights=(bloom / BLOOM_LEVELS,) * BLOOM_LEVELS if bloom else (),
-        tone_curve=_tone_curve(tone_curve),
-        exposure=exposure,
-        depth_of_field=depth_of_field,
-        aberration=aberration,
-        vignette=vignette,
-        fxaa=fxaa,
-    )
     shown = _shown(show or [])
     described, _ = load_scene(scene, size, camera)
     result, report = _draw(described, options)
@@ -173,13 +125,6 @@ def _draw(scene: Scene, options: FrameOptions) -> tuple[FrameResult, dict[str, A
     report: dict[str, Any] = {"triangles": len(ready.faces)}
     report |= {f"{name} ms": round(spent, 1) for name, spent in result.milliseconds.items()}
     return result, report | {"seconds": round(seconds, 3)}
-
-
-def _tone_curve(name: str) -> ToneCurve | None:
-    if name == "none":
-        return None
-    curve: ToneCurve = typed("frame", "--tone-curve", ToneCurve, name)
-    return curve
 
 
 def _shown(names: list[str]) -> list[str]:

@@ -12,9 +12,13 @@ from __future__ import annotations
 from photograd.frame.antialiasing import TemporalAntialiasing, fxaa
 from photograd.frame.bloom import bloom, bloom_backward
 from photograd.frame.depth_of_field import circle_of_confusion, depth_of_field
+from photograd.frame.disks import Disks, scene_disks
 from photograd.frame.dithering import dither
+from photograd.frame.fog import add_fog
+from photograd.frame.gathering import gather, reflectance_pdf, sample_reflectance
 from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer, reflect
 from photograd.frame.graph import FrameResult, Pass, PassGraph
+from photograd.frame.horizon import HorizonSettings, horizon_occlusion
 from photograd.frame.lens_effects import chromatic_aberration, vignette
 from photograd.frame.light_views import (
     FrameLight,
@@ -30,24 +34,33 @@ from photograd.frame.occlusion import SsaoSettings, ssao, ssao_backward
 from photograd.frame.options import FrameOptions
 from photograd.frame.pipeline import frame_graph
 from photograd.frame.scene import FrameScene
+from photograd.frame.screen_rays import ScreenRaySettings, follow_screen_rays
 from photograd.frame.shadows import ShadowMap, ShadowSettings, draw_shadow_map, look_up_shadow
 from photograd.frame.tone_mapping import tone_map, tone_map_backward
+from photograd.frame.transparency import Layer, blend_nearest_first, blend_weighted
 from photograd.frame.tuning import TunedOcclusion, traced_occlusion, tune_occlusion
 
 __all__ = [
+    "Disks",
     "FrameLight",
     "FrameOptions",
     "FrameResult",
     "FrameScene",
     "GBuffer",
+    "HorizonSettings",
+    "Layer",
     "Pass",
     "PassGraph",
+    "ScreenRaySettings",
     "ShadowMap",
     "ShadowSettings",
     "SsaoSettings",
     "TemporalAntialiasing",
     "TunedOcclusion",
+    "add_fog",
     "background",
+    "blend_nearest_first",
+    "blend_weighted",
     "bloom",
     "bloom_backward",
     "chromatic_aberration",
@@ -59,13 +72,19 @@ __all__ = [
     "draw_shadow_maps",
     "draw_surfaces",
     "fill_gbuffer",
+    "follow_screen_rays",
     "frame_graph",
     "fxaa",
+    "gather",
+    "horizon_occlusion",
     "infinite_lights",
     "light_surfaces",
     "look_up_shadow",
     "motion_blur",
     "reflect",
+    "reflectance_pdf",
+    "sample_reflectance",
+    "scene_disks",
     "sky_lights",
     "ssao",
     "ssao_backward",

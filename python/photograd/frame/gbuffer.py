@@ -8,6 +8,7 @@ those that a path would meet at the centers of the pixels.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -52,6 +53,17 @@ class GBuffer:
     def covered(self) -> Array:
         """(H, W) bool, whether a surface is visible."""
         return self.material >= 0
+
+    def core_arguments(self, scene: FrameScene) -> dict[str, Any]:
+        """What the core's functions of lit surfaces take, by name.
+
+        Args:
+            scene: of the surfaces.
+        """
+        arguments = scene.tracer.core_arguments(self.camera)
+        del arguments["camera"]
+        eye = tuple(self.camera.position.tolist())
+        return {**arguments, "eye": eye, "gbuffer": self.flat()}
 
     def flat(self) -> dict[str, Array]:
         """The arrays that the core reads, (H W, ...) each, without copies."""
@@ -165,13 +177,9 @@ def reflect(
     size = (surfaces.camera.height, surfaces.camera.width, 3)
     wi = call.array("wi", wi, size)
     irradiance = call.array("irradiance", irradiance, size)
-    arguments = scene.tracer.core_arguments(surfaces.camera)
-    del arguments["camera"]
     call.run(
         _core.light_gbuffer,
-        **arguments,
-        eye=tuple(surfaces.camera.position.tolist()),
-        gbuffer=surfaces.flat(),
+        **surfaces.core_arguments(scene),
         wi=wi.reshape(-1, 3),
         irradiance=irradiance.reshape(-1, 3),
         out=onto.reshape(-1, 3),

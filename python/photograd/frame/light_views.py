@@ -83,6 +83,19 @@ class DeltaFrameLight(FrameLight):
 
 
 @dataclass(frozen=True, eq=False)
+class SkyDirection(DeltaFrameLight):
+    """One of the directions that stand for a light at infinity.
+
+    Attributes:
+        name, light: as of others.
+        density: samples per steradian around it, of all directions of the light together.
+    """
+
+    light: DirectionalLight
+    density: float
+
+
+@dataclass(frozen=True, eq=False)
 class PatchLight(FrameLight):
     """A small part of a surface that emits on one side, as a point on it.
 
@@ -111,23 +124,28 @@ class PatchLight(FrameLight):
         return cube_views(self.position + 2 * scene.near * self.normal, size)
 
 
-def sky_lights(scene: FrameScene, count: int) -> list[FrameLight]:
+def sky_count(light: Light, count: int) -> int:
+    """Directions that stand for a light at infinity, where `count` of them are asked for."""
+    return 1 if isinstance(light, SunLight) else count
+
+
+def sky_lights(scene: FrameScene, count: int) -> list[SkyDirection]:
     """Directions towards the lights at infinity, `count` of each, a sun one, by their density.
 
     Args:
         scene: whose lights and environment are looked at.
         count: directions of a light.
     """
-    lights: list[FrameLight] = []
+    lights = []
     origin = np.zeros((1, 3))
     for name, light in infinite_lights(scene.scene).items():
-        steps = np.arange(1 if isinstance(light, SunLight) else count)
+        steps = np.arange(sky_count(light, count))
         u2 = np.stack([(steps + 0.5) / len(steps), (0.5 + GOLDEN_SECTION * steps) % 1.0], axis=1)
         found = light.sample(np.repeat(origin, len(steps), axis=0), u2)
         for i in np.flatnonzero(found.pdf > 0):
-            irradiance = found.radiance[i] / (found.pdf[i] * len(steps))
-            direction = DirectionalLight(found.direction[i], irradiance)
-            lights.append(DeltaFrameLight(f"{name}.{i}", direction))
+            density = float(found.pdf[i] * len(steps))
+            direction = DirectionalLight(found.direction[i], found.radiance[i] / density)
+            lights.append(SkyDirection(f"{name}.{i}", direction, density))
     return lights
 
 

@@ -14,6 +14,7 @@ from photograd._arrays import Arguments
 from photograd._checks import require_types
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
+from photograd.frame.screen import Intrinsics, screen_arguments
 from photograd.types import Array
 
 
@@ -113,13 +114,6 @@ def ssao_backward(
 
 def _arguments(
     call: Arguments, depth: Array, normals: Array, camera: Camera, settings: SsaoSettings
-) -> tuple[Array, Array, tuple[float, float, float, float], Array]:
-    size = (camera.height, camera.width)
-    depth = call.array("depth", depth, size, finite=False, above=0.0)
-    normals = call.array("normals", normals, (*size, 3))
-    inverse = np.divide(1.0, depth, dtype=depth.dtype)
-    rotation = camera.world_from_camera[:3, :3].astype(depth.dtype)
-    # Axis by axis: the same bits on every processor, which a matrix product need not give.
-    local = np.stack([(normals * rotation[:, k]).sum(axis=-1) for k in range(3)], axis=-1)
-    numbers = np.array(list(asdict(settings).values()), depth.dtype)
-    return inverse, local, (camera.fx, camera.fy, camera.cx, camera.cy), numbers
+) -> tuple[Array, Array, Intrinsics, Array]:
+    screen = screen_arguments(call, depth, normals, camera)
+    return *screen, np.array(list(asdict(settings).values()), screen[0].dtype)

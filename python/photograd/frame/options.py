@@ -7,11 +7,14 @@ from typing import Literal
 
 from photograd._arrays import Arguments
 from photograd._checks import require_choices
+from photograd.frame.horizon import HorizonSettings
 from photograd.frame.occlusion import SsaoSettings
+from photograd.frame.screen_rays import ScreenRaySettings
 from photograd.frame.shadows import ShadowSettings
 from photograd.frame.tone_mapping import ToneCurve
 
-SkyVisibility = Literal["occlusion", "shadow_maps", "none"]
+SkyVisibility = Literal["occlusion", "horizon", "disks", "directional", "shadow_maps", "none"]
+Transparency = Literal["peeled", "sorted", "weighted"]
 Shading = Literal["deferred", "forward"]
 
 
@@ -26,13 +29,23 @@ class FrameOptions:
         surface_points: points that stand for the surfaces that emit, all together; each has a
             shadow map. 0 leaves their light out.
         sky_directions: directions that stand for each light at infinity. 0 leaves it out.
-        sky_visibility: what is in the way of that light: ambient "occlusion" in screen space, the
-            same from all sides, "shadow_maps", one a direction, or "none", nothing.
+        sky_visibility: what is in the way of that light. The same from all sides: ambient
+            "occlusion" in screen space, "horizon", from the horizons there, or "disks", which stand
+            for all surfaces. For each direction: "directional", rays in screen space, or
+            "shadow_maps". "none" hides nothing.
         shadows: of all shadow maps.
         occlusion: of the ambient occlusion.
         occlusion_samples: a pixel.
-        layers: of surfaces that cover a part, by depth peeling; what lies behind further ones is
-            left out.
+        horizon: of the occlusion from horizons.
+        disk_edge: meters; faces with longer edges become several disks.
+        screen_rays: of all rays in screen space.
+        gather_samples: directions a pixel in which the reflectance looks for light that the frame
+            shows, or for the sky behind it: screen-space irradiance and reflections. 0 for none.
+        transparency: how surfaces that cover a part are blended: "peeled", exactly, "sorted" by
+            shapes, or "weighted", in any order.
+        layers: of such surfaces; what lies behind further ones is left out.
+        fog: extinction of homogeneous fog, 1/m.
+        fog_color: radiance of infinitely deep fog.
         supersampling: samples along a side of a pixel; radiance is averaged before it is shown.
         depth_of_field: samples of the blur that the scene's lens makes, a pixel; 0 for a pinhole.
         bloom_weights: the part of the light that each level of the bloom spreads; () for none.
@@ -54,7 +67,14 @@ class FrameOptions:
     shadows: ShadowSettings = field(default_factory=ShadowSettings)
     occlusion: SsaoSettings = field(default_factory=SsaoSettings)
     occlusion_samples: int = 16
+    horizon: HorizonSettings = field(default_factory=HorizonSettings)
+    disk_edge: float = 0.1
+    screen_rays: ScreenRaySettings = field(default_factory=ScreenRaySettings)
+    gather_samples: int = 0
+    transparency: Transparency = "peeled"
     layers: int = 8
+    fog: float = 0.0
+    fog_color: tuple[float, float, float] = (0.5, 0.5, 0.5)
     supersampling: int = 1
     depth_of_field: int = 0
     bloom_weights: tuple[float, ...] = ()
@@ -71,6 +91,10 @@ class FrameOptions:
         for name in ("surface_points", "sky_directions"):
             call.integer(name, getattr(self, name), low=0, high=4096)
         call.integer("occlusion_samples", self.occlusion_samples, low=1, high=256)
+        call.number("disk_edge", self.disk_edge, above=0.0)
+        call.integer("gather_samples", self.gather_samples, low=0, high=4096)
+        call.number("fog", self.fog, low=0.0)
+        call.array("fog_color", self.fog_color, (3,), low=0.0)
         call.integer("layers", self.layers, low=0, high=64)
         call.integer("supersampling", self.supersampling, low=1, high=16)
         call.integer("depth_of_field", self.depth_of_field, low=0, high=4096)

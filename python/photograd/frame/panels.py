@@ -15,8 +15,9 @@ from photograd.raster import Visibility
 from photograd.types import Array
 
 PANELS = (
-    *("visibility", "gbuffer", "shadows", "occlusion", "direct", "sky_light", "background"),
-    *("opaque", "layered", "focused", "radiance", "bloom", "lens", "toned", "display"),
+    *("visibility", "gbuffer", "shadows", "occlusion", "direct", "sky_light", "gathered"),
+    *("background", "opaque", "layered", "fogged", "focused", "radiance", "bloom", "lens"),
+    *("toned", "display"),
 )
 """Buffers that can be shown."""
 COLORS = np.array(

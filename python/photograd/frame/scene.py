@@ -18,6 +18,7 @@ from photograd.capture.camera import Camera
 from photograd.errors import SceneError, message
 from photograd.geometry.icosphere import icosphere
 from photograd.raster import RasterOptions, Visibility, project, rasterize
+from photograd.transport.material import Material
 from photograd.transport.media_list import transmits
 from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Scene
@@ -98,6 +99,15 @@ class FrameScene:
     def near(self) -> float:
         """Meters: nothing nearer to a camera or a light is drawn."""
         return 1e-4 * self.radius
+
+    def center_of(self, shape: int) -> FloatArray:
+        """(3,), of the box around a shape of the core, meters.
+
+        Args:
+            shape: its number.
+        """
+        points = self.vertices[self.faces[self.shape == shape].reshape(-1)]
+        return 0.5 * np.asarray(points.min(axis=0) + points.max(axis=0))
 
     def draw(
         self, camera: Camera, *kinds: str, behind: Array | None = None, shape: int | None = None
@@ -183,8 +193,14 @@ def _kind(scene: Scene, shape: Shape) -> str:
     material = scene.materials.get(shape.material)
     if material is None:
         return "opaque"  # a light with a surface
-    if transmits(material.model):
+    if transmits(material.model) and not _lets_nothing_through(material):
         return "glass"
     if not material.has_opacity:
         return "opaque"
     return "blended" if material.alpha_cutoff is None else "mask"
+
+
+def _lets_nothing_through(material: Material) -> bool:
+    """Whether a material of layers has none that transmits."""
+    part = material.values.get("transmission")
+    return part is not None and part == 0 and "transmission" not in material.textures
