@@ -33,6 +33,7 @@ def test_a_frame_its_buffers_and_the_truth(photograd: Photograd, tmp_path: Path)
     for name in PANELS:
         sheet = np.asarray(Image.open(tmp_path / f"frame.{name}.png"))
         assert sheet.shape[0] in (24, 48, 64)  # pixels, samples, texels
+    assert np.asarray(Image.open(tmp_path / "frame.graph.png")).std() > 10
     assert np.asarray(Image.open(tmp_path / "frame.against.png")).shape[:2] == (48, 72)
 
 
@@ -57,10 +58,22 @@ def test_fog_and_gathered_light_are_asked_for(photograd: Photograd, tmp_path: Pa
     assert pictures[2].mean() < 0.9 * pictures[0].mean()
 
 
+def test_what_is_not_drawn_changes_little(photograd: Photograd, tmp_path: Path) -> None:
+    pictures = []
+    for words in ((), ("--culling", "none"), ("--detail", 0.5), ("--dither", "--seed", 3)):
+        out = tmp_path / f"{len(pictures)}.png"
+        done = photograd("frame", "cornell-box", *FAST, *words, "--out", out)
+        assert done.code == 0, done.err
+        pictures.append(np.asarray(Image.open(out)).astype(int))
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    np.testing.assert_array_equal(pictures[0], pictures[2])  # nothing has enough triangles
+    assert 0 < np.abs(pictures[0] - pictures[3]).max() <= 2
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--show", "gbufer"), "--show: expected all, or one of visibility, gbuffer"),
+        (("--show", "gbufer"), "--show: expected all, graph, or one of visibility"),
         (("--against", "photons"), "--against: expected 'path'"),
         (("--tone-curve", "filmic"), "--tone-curve: expected one of reinhard, aces, agx"),
         (("--shading", "later"), "--shading: expected one of deferred, forward"),

@@ -81,3 +81,15 @@ def test_what_has_moved_is_found_and_leaves_no_trail() -> None:
     clamped = TemporalAntialiasing(weight=0.1)
     clamped.add(pictures[0] + 5.0)
     assert clamped.add(pictures[1]).max() <= pictures[1].max()
+
+
+def test_single_frames_and_still_pictures_stay_as_they_are() -> None:
+    g = np.random.default_rng(5)
+    first, second = g.uniform(0, 1, (2, 9, 8, 3))
+    alone = TemporalAntialiasing(weight=1.0)
+    alone.add(first)
+    np.testing.assert_allclose(alone.add(second), second, rtol=1e-14)
+    still = TemporalAntialiasing(weight=0.1)
+    for _ in range(3):
+        found = still.add(first, np.zeros((9, 8, 2)))
+    np.testing.assert_allclose(found, first, rtol=1e-14)

@@ -9,6 +9,7 @@ import numpy as np
 from photograd.frame import (
     FrameOptions,
     FrameScene,
+    LastFrame,
     ShadowSettings,
     bloom_backward,
     frame_graph,
@@ -71,3 +72,28 @@ def under_a_sky() -> list[Any]:
         found = frame_graph(ready, options).run({"camera": scene.camera})
         made += [found[name] for name in ("occlusion", "sky_light", "gathered", "display")]
     return made
+
+
+@same_bits("frame in motion")
+def in_motion() -> list[Any]:
+    """Velocities, blur and the mean over frames, behind culled clusters and all effects."""
+    scene = scenes.room(scenes.LIGHTS["spot"])
+    pose = scene.camera.world_from_camera.copy()
+    pose[:3, 3] += [0.1, 0.05, 0.0]
+    cameras = (replace(scene.camera, world_from_camera=pose), scene.camera)
+    options = FrameOptions(
+        culling="facing",
+        sky_directions=0,
+        shadows=ShadowSettings(size=100),
+        shutter=0.5,
+        temporal=0.2,
+        aberration=0.01,
+        vignette=0.5,
+        fxaa=True,
+    )
+    ready, made, last = FrameScene(scene), [], LastFrame(cameras[0])
+    for camera in cameras:
+        found = frame_graph(ready, options).run({"camera": camera, "last": last})
+        last = LastFrame(camera, history=found["history"])
+        made += [found[name] for name in ("velocity", "blurred", "accumulated", "display")]
+    return [*made, ready.meshlets.number, ready.meshlets.boxes, ready.meshlets.spread]

@@ -69,6 +69,20 @@ def test_each_technique_hides_some_of_the_sky(visibility: Any) -> None:
     assert part.min() < 0.75
 
 
+def test_a_frame_does_not_depend_on_the_one_before() -> None:
+    scene = scenes.room(scenes.LIGHTS["point"])
+    ready = FrameScene(scene)
+    pose = scene.camera.world_from_camera.copy()
+    pose[:3, 3] += [1.2, 0.3, 0.0]
+    cameras = (scene.camera, replace(scene.camera, world_from_camera=pose))
+    graph = frame_graph(ready, PLAIN)
+    found = [graph.run({"camera": cameras[k]}, ["display"])["display"] for k in (0, 1, 0)]
+    np.testing.assert_array_equal(found[0], found[2])
+    assert (found[0] != found[1]).any()
+    alone = frame_graph(FrameScene(scene), PLAIN).run({"camera": cameras[1]}, ["display"])
+    np.testing.assert_array_equal(found[1], alone["display"])
+
+
 def test_fog_hides_the_background() -> None:
     found = displayed(replace(PLAIN, fog=0.5, fog_color=(0.2, 0.3, 0.4)))
     covered = found["visibility"].covered

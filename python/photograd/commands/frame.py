@@ -15,7 +15,10 @@ from photograd.commands.frame_options import (
     AberrationOption,
     AgainstOption,
     BloomOption,
+    CullingOption,
+    DetailOption,
     DirectionsOption,
+    DitherOption,
     ExposureOption,
     FocusOption,
     FogColorOption,
@@ -24,6 +27,7 @@ from photograd.commands.frame_options import (
     GatherOption,
     OutOption,
     PointsOption,
+    PrepassOption,
     ShadingOption,
     ShadowSizeOption,
     ShowOption,
@@ -38,7 +42,9 @@ from photograd.commands.shared import DepthOption, SppOption, check_output_name,
 from photograd.commands.trace import CameraOption, SceneArgument, SizeOption, load_scene
 from photograd.errors import RangeError, message
 from photograd.frame.against import Comparison, compare_with_paths
-from photograd.frame.graph import FrameResult
+from photograd.frame.detail import SceneDetail
+from photograd.frame.dithering import dither
+from photograd.frame.graph import FrameResult, PassGraph
 from photograd.frame.options import FrameOptions
 from photograd.frame.panels import PANELS, panels
 from photograd.frame.pipeline import frame_graph
@@ -47,6 +53,8 @@ from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.write import write_png, write_radiance
 from photograd.transport.scene import Scene
 from photograd.types import Array
+
+GRAPH = "graph"
 
 
 def register(app: typer.Typer) -> None:
@@ -64,6 +72,9 @@ def frame(
     spp: SppOption = 256,
     max_depth: DepthOption = 64,
     shading: ShadingOption = "deferred",
+    depth_prepass: PrepassOption = False,
+    culling: CullingOption = "frustum",
+    detail: DetailOption = 0.0,
     sky_visibility: SkyOption = "occlusion",
     surface_points: PointsOption = 16,
     sky_directions: DirectionsOption = 32,
@@ -80,6 +91,7 @@ def frame(
     aberration: AberrationOption = 0.0,
     vignette: VignetteOption = 0.0,
     fxaa: FxaaOption = False,
+    dithered: DitherOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -101,10 +113,12 @@ def frame(
         raise RangeError(message("frame", "--against", "'path'", against))
     shown = _shown(show or [])
     described, _ = load_scene(scene, size, camera)
-    result, report = _draw(described, options)
-    _write(result, out)
+    if detail:
+        described = SceneDetail(described).at(described.camera, detail)
+    graph, result, report = _draw(described, options)
+    _write(result, out, seed if dithered else None)
     for name in shown:
-        _write_sheet(out.with_suffix(f".{name}.png"), list(panels(result, name).values()))
+        _write_buffer(graph, result, name, out.with_suffix(f".{name}.png"))
     report = {"out": out} | report
     if against:
         rows = compare_with_paths(
@@ -114,31 +128,47 @@ def frame(
     emit(report, as_json=as_json, title="frame")
 
 
-def _draw(scene: Scene, options: FrameOptions) -> tuple[FrameResult, dict[str, Any]]:
-    """Buffers of the frame, and what is reported of them."""
+def _draw(scene: Scene, options: FrameOptions) -> tuple[PassGraph, FrameResult, dict[str, Any]]:
+    """The passes, their buffers, and what is reported of them."""
     ready = FrameScene(scene)
     if (ready.kind == KINDS.index("glass")).any():
         note("surfaces that light passes through are left out; they cast shadows")
     began = time.monotonic()
-    result = frame_graph(ready, options).run({"camera": scene.camera})
+    graph = frame_graph(ready, options)
+    result = graph.run({"camera": scene.camera})
     seconds = time.monotonic() - began
     report: dict[str, Any] = {"triangles": len(ready.faces)}
     report |= {f"{name} ms": round(spent, 1) for name, spent in result.milliseconds.items()}
-    return result, report | {"seconds": round(seconds, 3)}
+    return graph, result, report | {"seconds": round(seconds, 3)}
 
 
 def _shown(names: list[str]) -> list[str]:
     for name in names:
-        if name not in (*PANELS, "all"):
-            expected = f"all, or one of {', '.join(PANELS)}"
+        if name not in (*PANELS, "all", GRAPH):
+            expected = f"all, {GRAPH}, or one of {', '.join(PANELS)}"
             raise RangeError(message("frame", "--show", expected, name))
-    return list(PANELS) if "all" in names else list(dict.fromkeys(names))
+    every = [*PANELS, GRAPH]
+    return every if "all" in names else list(dict.fromkeys(names))
 
 
-def _write(result: FrameResult, out: Path) -> None:
+def _write_buffer(graph: PassGraph, result: FrameResult, name: str, path: Path) -> None:
+    if name == GRAPH:
+        from photograd_course.viz import save_figure
+
+        from photograd.frame.graph_picture import draw_graph
+
+        save_figure(draw_graph(graph, result.milliseconds), path)
+    else:
+        _write_sheet(path, list(panels(result, name).values()))
+
+
+def _write(result: FrameResult, out: Path, seed: int | None) -> None:
+    """The picture; with a seed, dithered."""
     if out.suffix.lower() in LINEAR_SUFFIXES:
         write_radiance(out, result["radiance"].astype(np.float32))
     display = srgb_encode(np.clip(result["display"], 0.0, 1.0))
+    if seed is not None:
+        display = dither(display, seed=seed)
     write_png(out.with_suffix(".png"), display.astype(np.float32))
 
 

@@ -11,6 +11,7 @@ import typer
 from photograd._checks import typed
 from photograd.commands.shared import out_option
 from photograd.errors import RangeError, message
+from photograd.frame.meshlets import Culling
 from photograd.frame.options import FrameOptions, Shading, SkyVisibility, Transparency
 from photograd.frame.panels import PANELS
 from photograd.frame.shadows import ShadowSettings
@@ -24,13 +25,34 @@ ShowOption = Annotated[
     typer.Option(
         "--show",
         metavar="BUFFER",
-        help=f"Write a buffer beside the picture, or 'all': {', '.join(PANELS)}. May be repeated.",
+        help="Write a buffer beside the picture, the passes as a 'graph', or 'all': "
+        f"{', '.join(PANELS)}. May be repeated.",
     ),
 ]
 AgainstOption = Annotated[
     str, typer.Option("--against", help="'path' compares each kind of light with path tracing.")
 ]
 ShadingOption = Annotated[str, typer.Option("--shading", help="deferred or forward.")]
+PrepassOption = Annotated[
+    bool,
+    typer.Option(
+        "--depth-prepass", help="Forward shading draws depths first, lights what is seen."
+    ),
+]
+CullingOption = Annotated[
+    str,
+    typer.Option(
+        "--culling",
+        help="Clusters of triangles that are left out: none; frustum, what is outside of the view; "
+        "facing, also what turns its back.",
+    ),
+]
+DetailOption = Annotated[
+    float,
+    typer.Option(
+        "--detail", min=0.0, help="Pixels by which coarser meshes may be off; 0 keeps all."
+    ),
+]
 SkyOption = Annotated[
     str,
     typer.Option(
@@ -82,11 +104,27 @@ VignetteOption = Annotated[
     float, typer.Option("--vignette", min=0.0, max=1.0, help="Part of the natural vignetting.")
 ]
 FxaaOption = Annotated[bool, typer.Option("--fxaa", help="Blend across edges afterwards.")]
+DitherOption = Annotated[
+    bool, typer.Option("--dither", help="Noise of one step in the .png, against bands.")
+]
 
 
-CHOICES = {"shading": Shading, "sky_visibility": SkyVisibility, "transparency": Transparency}
+CHOICES = {
+    "shading": Shading,
+    "culling": Culling,
+    "sky_visibility": SkyVisibility,
+    "transparency": Transparency,
+}
 SAME = (
-    *("surface_points", "sky_directions", "fog", "supersampling", "exposure", "depth_of_field"),
+    *(
+        "depth_prepass",
+        "surface_points",
+        "sky_directions",
+        "fog",
+        "supersampling",
+        "exposure",
+        "depth_of_field",
+    ),
     *("aberration", "vignette", "fxaa"),
 )
 """Named alike in `FrameOptions`."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 from photograd.frame.antialiasing import TemporalAntialiasing, fxaa
 from photograd.frame.bloom import bloom, bloom_backward
 from photograd.frame.depth_of_field import circle_of_confusion, depth_of_field
+from photograd.frame.detail import SceneDetail
 from photograd.frame.disks import Disks, scene_disks
 from photograd.frame.dithering import dither
 from photograd.frame.fog import add_fog
@@ -29,7 +30,8 @@ from photograd.frame.light_views import (
     surface_lights,
 )
 from photograd.frame.lighting import draw_shadow_maps, light_surfaces
-from photograd.frame.motion import motion_blur, velocity
+from photograd.frame.meshlets import Meshlets, meshlets
+from photograd.frame.motion import LastFrame, motion_blur, velocity
 from photograd.frame.occlusion import SsaoSettings, ssao, ssao_backward
 from photograd.frame.options import FrameOptions
 from photograd.frame.pipeline import frame_graph
@@ -48,9 +50,12 @@ __all__ = [
     "FrameScene",
     "GBuffer",
     "HorizonSettings",
+    "LastFrame",
     "Layer",
+    "Meshlets",
     "Pass",
     "PassGraph",
+    "SceneDetail",
     "ScreenRaySettings",
     "ShadowMap",
     "ShadowSettings",
@@ -80,6 +85,7 @@ __all__ = [
     "infinite_lights",
     "light_surfaces",
     "look_up_shadow",
+    "meshlets",
     "motion_blur",
     "reflect",
     "reflectance_pdf",

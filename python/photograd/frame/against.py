@@ -16,9 +16,10 @@ import numpy as np
 from photograd_course.color import srgb_encode
 
 from photograd.capture.camera import Camera
+from photograd.frame._post_passes import show
 from photograd.frame.light_views import infinite_lights
 from photograd.frame.options import FrameOptions
-from photograd.frame.pipeline import frame_graph, show
+from photograd.frame.pipeline import frame_graph
 from photograd.frame.scene import FrameScene
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene

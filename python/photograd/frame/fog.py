@@ -13,6 +13,7 @@ from photograd_course.portable_math import exp
 
 from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
+from photograd.frame.pixels import pixel_centers
 from photograd.types import Array
 
 
@@ -37,7 +38,7 @@ def add_fog(radiance: Array, depth: Array, camera: Camera, sigma_t: float, color
     color = call.array("color", color, (3,), dtype=radiance.dtype, low=0.0)
     if not sigma_t:
         return radiance
-    y, x = np.mgrid[: size[0], : size[1]] + 0.5
+    x, y = pixel_centers(*size)
     x, y = (x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy
     path = depth * np.sqrt(1.0 + x * x + y * y)
     clear = exp(-np.minimum(sigma_t * path, 700.0)).astype(radiance.dtype)[..., None]

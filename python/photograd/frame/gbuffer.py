@@ -15,6 +15,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
+from photograd.frame.meshlets import Culling
 from photograd.frame.scene import KINDS, FrameScene
 from photograd.raster import Visibility
 from photograd.types import Array
@@ -131,6 +132,7 @@ def draw_surfaces(
     *kinds: str,
     behind: Array | None = None,
     shape: int | None = None,
+    culling: Culling = "none",
 ) -> tuple[Visibility, GBuffer]:
     """What each pixel sees first, masks only where they cover, and its surface.
 
@@ -142,8 +144,9 @@ def draw_surfaces(
         kinds: of faces, of `photograd.frame.scene.KINDS`.
         behind: (H, W) depths; only what lies further away is drawn. None draws all.
         shape: of the core, which alone is drawn; None draws all.
+        culling: of clusters of triangles.
     """
-    visibility = scene.draw(camera, *kinds, behind=behind, shape=shape)
+    visibility = scene.draw(camera, *kinds, behind=behind, shape=shape, culling=culling)
     surfaces = fill_gbuffer(scene, camera, visibility)
     is_mask = scene.kind == KINDS.index("mask")
     for _ in range(MASK_LAYERS if is_mask.any() else 0):
@@ -151,7 +154,7 @@ def draw_surfaces(
         if not holes.any():
             break
         nearer = np.where(holes, visibility.depth, np.inf)
-        below = scene.draw(camera, *kinds, behind=nearer, shape=shape)
+        below = scene.draw(camera, *kinds, behind=nearer, shape=shape, culling=culling)
         for name in ("face", "barycentrics", "depth"):
             getattr(visibility, name)[holes] = getattr(below, name)[holes]
         surfaces = fill_gbuffer(scene, camera, visibility)

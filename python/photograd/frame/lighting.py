@@ -72,8 +72,9 @@ def light_forward(
     lights: Sequence[FrameLight],
     shadows: Shadows,
     settings: ShadowSettings,
+    nearest: Array | None = None,
 ) -> tuple[Array, int]:
-    """Forward shading: each shape is lit as it is drawn, whether it is hidden later or not.
+    """Forward shading: each shape is lit as it is drawn, hidden later or not.
 
     Args:
         scene: that is drawn, what covers whole; masks are drawn as they are, too.
@@ -81,18 +82,24 @@ def light_forward(
         lights: that shine.
         shadows: of the lights that have some.
         settings: of the shadow maps.
+        nearest: (H, W) depths of what is visible, drawn before, so that nothing hidden is lit. None
+            lights what is nearest up to then.
 
     Returns:
         Radiance (H, W, 3), as `light_surfaces` finds it from the G-buffer, and how many fragments
         were lit for it.
     """
     size = (camera.height, camera.width)
-    out, nearest, lit = np.zeros((*size, 3), scene.dtype), np.full(size, np.inf), 0
+    out, lit = np.zeros((*size, 3), scene.dtype), 0
+    depth, done = np.full(size, np.inf), np.zeros(size, np.bool_)
     for shape in np.unique(scene.shape):
         visibility, surfaces = draw_surfaces(scene, camera, "opaque", "mask", shape=int(shape))
-        visible = surfaces.covered & (visibility.depth < nearest)
+        visible = surfaces.covered & (visibility.depth < depth)
+        if nearest is not None:
+            visible = surfaces.covered & (visibility.depth == nearest) & ~done
         surfaces.material[~visible] = -1
         found = light_surfaces(scene, surfaces, lights, shadows, settings)
-        out[visible], nearest[visible] = found[visible], visibility.depth[visible]
+        out[visible], depth[visible] = found[visible], visibility.depth[visible]
+        done |= visible
         lit += int(visible.sum())
     return out, lit

@@ -8,6 +8,7 @@ alone would blur what stands still behind a moving shape.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from photograd_course.portable_math import matmul
@@ -15,9 +16,26 @@ from photograd_course.portable_math import matmul
 from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
+from photograd.frame.antialiasing import TemporalAntialiasing
 from photograd.frame.gbuffer import GBuffer
 from photograd.frame.pixels import color_argument, look_up, pixel_centers
 from photograd.types import Array, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LastFrame:
+    """What a frame needs of the one before it.
+
+    Attributes:
+        camera: that took it; for a first frame, its own.
+        moved: {shape: matrix (4, 4)} of shapes that have moved: where they were in the last frame,
+            from where they are in this one.
+        history: its buffer of this name; None for a first frame.
+    """
+
+    camera: Camera
+    moved: Mapping[int, FloatArray] = field(default_factory=dict)
+    history: TemporalAntialiasing | None = None
 
 
 def velocity(
@@ -86,6 +104,8 @@ def motion_blur(color: Array, moved: Array, shutter: float = 1.0, *, samples: in
     moved = call.array("moved", moved, (*color.shape[:2], 2), dtype=color.dtype, finite=False)
     shutter = call.number("shutter", shutter, low=0.0, high=1.0)
     count = call.integer("samples", samples, low=1, high=4096)
+    if shutter == 0:
+        return color.copy()
     moved = np.where(np.isfinite(moved), moved, 0.0).astype(color.dtype)
     height, width = color.shape[:2]
     x, y = pixel_centers(height, width, color.dtype)

@@ -8,6 +8,7 @@ from typing import Literal
 from photograd._arrays import Arguments
 from photograd._checks import require_choices
 from photograd.frame.horizon import HorizonSettings
+from photograd.frame.meshlets import Culling
 from photograd.frame.occlusion import SsaoSettings
 from photograd.frame.screen_rays import ScreenRaySettings
 from photograd.frame.shadows import ShadowSettings
@@ -26,6 +27,9 @@ class FrameOptions:
         shading: "deferred" keeps surfaces in a G-buffer and lights them afterwards, "forward"
             lights the surfaces of each shape as it is drawn, seen in the end or not; both make the
             same picture.
+        depth_prepass: whether forward shading draws depths first, and lights only what is visible.
+        culling: of clusters of triangles before the camera draws them: "frustum" those outside of
+            its view, which changes nothing, "facing" also those that show it their backs alone.
         surface_points: points that stand for the surfaces that emit, all together; each has a
             shadow map. 0 leaves their light out.
         sky_directions: directions that stand for each light at infinity. 0 leaves it out.
@@ -48,6 +52,9 @@ class FrameOptions:
         fog_color: radiance of infinitely deep fog.
         supersampling: samples along a side of a pixel; radiance is averaged before it is shown.
         depth_of_field: samples of the blur that the scene's lens makes, a pixel; 0 for a pinhole.
+        shutter: part of the time between two frames for which the shutter is open; 0 for none.
+        shutter_samples: along the way of each pixel.
+        temporal: weight of a frame in the mean over frames; 0 for single frames.
         bloom_weights: the part of the light that each level of the bloom spreads; () for none.
         bloom_threshold: radiance above which light spreads.
         aberration: relative difference of the sizes of red and blue.
@@ -61,6 +68,8 @@ class FrameOptions:
     """
 
     shading: Shading = "deferred"
+    depth_prepass: bool = False
+    culling: Culling = "frustum"
     surface_points: int = 16
     sky_directions: int = 32
     sky_visibility: SkyVisibility = "occlusion"
@@ -77,6 +86,9 @@ class FrameOptions:
     fog_color: tuple[float, float, float] = (0.5, 0.5, 0.5)
     supersampling: int = 1
     depth_of_field: int = 0
+    shutter: float = 0.0
+    shutter_samples: int = 16
+    temporal: float = 0.0
     bloom_weights: tuple[float, ...] = ()
     bloom_threshold: float = 0.0
     aberration: float = 0.0
@@ -98,6 +110,9 @@ class FrameOptions:
         call.integer("layers", self.layers, low=0, high=64)
         call.integer("supersampling", self.supersampling, low=1, high=16)
         call.integer("depth_of_field", self.depth_of_field, low=0, high=4096)
+        call.number("shutter", self.shutter, low=0.0, high=1.0)
+        call.integer("shutter_samples", self.shutter_samples, low=1, high=4096)
+        call.number("temporal", self.temporal, low=0.0, high=1.0)
         call.number("aberration", self.aberration, above=-0.5, below=0.5)
         call.number("vignette", self.vignette, low=0.0, high=1.0)
         call.number("exposure", self.exposure, low=-64.0, high=64.0)

@@ -6,6 +6,7 @@ up by the path tracer, so that normals, textures and materials of both are the s
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from photograd._checks import require_instance
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import SceneError, message
+from photograd.frame.meshlets import Culling, Meshlets, meshlets
 from photograd.geometry.icosphere import icosphere
 from photograd.raster import RasterOptions, Visibility, project, rasterize
 from photograd.transport.material import Material
@@ -109,8 +111,18 @@ class FrameScene:
         points = self.vertices[self.faces[self.shape == shape].reshape(-1)]
         return 0.5 * np.asarray(points.min(axis=0) + points.max(axis=0))
 
+    @cached_property
+    def meshlets(self) -> Meshlets:
+        """Clusters of the faces, found when they are first needed."""
+        return meshlets(self.vertices, self.faces, self.shape)
+
     def draw(
-        self, camera: Camera, *kinds: str, behind: Array | None = None, shape: int | None = None
+        self,
+        camera: Camera,
+        *kinds: str,
+        behind: Array | None = None,
+        shape: int | None = None,
+        culling: Culling = "none",
     ) -> Visibility:
         """The visibility buffer of a camera; numbers of faces are those of `faces`.
 
@@ -119,8 +131,9 @@ class FrameScene:
             kinds: of the faces that are drawn; masks are drawn whole.
             behind: (H, W) depths; only what lies further away is drawn. None draws all.
             shape: of the core, which alone is drawn; None draws all.
+            culling: of clusters of triangles.
         """
-        numbers = self._numbers(kinds)
+        numbers = self._numbers(kinds, camera, culling)
         if shape is not None:
             numbers = numbers[self.shape[numbers] == shape]
         found = rasterize(
@@ -143,15 +156,20 @@ class FrameScene:
             kinds: of the faces that are drawn; masks are drawn whole.
         """
         depth = np.full((camera.height, camera.width), np.inf)
-        positions, faces = project(self.vertices, camera), self.faces[self._numbers(kinds)]
+        numbers = self._numbers(kinds, camera, "frustum")
+        positions, faces = project(self.vertices, camera), self.faces[numbers]
         Arguments("FrameScene.draw_depth").run(
             _core.rasterize_depth, positions, faces, self.near, np.inf, depth
         )
         return depth
 
-    def _numbers(self, kinds: tuple[str, ...]) -> Array:
-        """Of the faces of these kinds."""
-        return np.flatnonzero(np.isin(self.kind, [KINDS.index(kind) for kind in kinds]))
+    def _numbers(self, kinds: tuple[str, ...], camera: Camera, culling: Culling) -> Array:
+        """Of the faces of these kinds that are not culled, growing."""
+        drawn = np.isin(self.kind, [KINDS.index(kind) for kind in kinds])
+        if culling != "none":
+            visible = self.meshlets.visible(camera, self.near, culling)
+            drawn &= visible[self.meshlets.number]
+        return np.flatnonzero(drawn)
 
 
 def _refuse_media(scene: Scene) -> None:
