@@ -41,8 +41,6 @@ CAMERAS = 48
 """All around, for fused depths."""
 TRUNCATION = 3.0
 """Of signed distances, in voxels."""
-FRONT = 1.5
-"""Voxels in front of the surface, from where its color is looked at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +115,7 @@ def extract_mesh(
         level = float(np.log(2.0)) / (HALVING * diagonal)
     level = call.number("level", level, above=0)
     vertices, faces, normals = _marched(measure, lattice, level)
-    ahead = FRONT * float(lattice.spacing.max())
-    colors = _straight_on(field, vertices, normals, ahead)
+    colors = _straight_on(field, vertices, normals)
     return ColoredMesh(vertices, faces, normals, colors, level)
 
 
@@ -177,15 +174,15 @@ def _points_of(box: Array, resolution: int) -> tuple[tuple[int, int, int], Float
     return (x, y, z), first, np.full(3, edge)
 
 
-def _straight_on(field: Fittable, vertices: Array, normals: Array, ahead: float) -> Array:
-    """Display colors (V, 3) of rays that look against the normals from just in front."""
+def _straight_on(field: Fittable, vertices: Array, normals: Array) -> Array:
+    """Display colors (V, 3) of rays that begin at the vertices and look against the normals."""
     colors = np.zeros((len(vertices), 3), np.float32)
     drawn: Any = field
     kind = next(iter(field.params.values())).dtype
     for start in range(0, len(vertices), RAYS_AT_ONCE):
         some = slice(start, start + RAYS_AT_ONCE)
         along = -normals[some].astype(np.float64)
-        origins = vertices[some] - ahead * along
+        origins = vertices[some].astype(np.float64)
         pixel = np.arange(start, start + len(origins), dtype=np.uint32)
         batch = RayBatch(origins.astype(kind), along.astype(kind), pixel)
         outputs, _ = drawn.render(batch, seed=0, step=0, options=RenderOptions(stop=1e-4))
