@@ -34,7 +34,7 @@ from photograd.types import Array
 
 Arrays = Mapping[str, Array]
 OUTPUTS = ("color", "opacity", "depth")
-PLACES = ("origins", "directions", "points", "camera_from_world")
+BATCH_INPUTS = ("origins", "directions", "points", "camera_from_world")
 """Of a batch: what `RenderOptions.camera_adjoint` gives derivatives with respect to."""
 SPLATS = ("means", "log_scales", "quats", "opacity_logits", "sh")
 SPLAT_INPUTS = (*SPLATS, "background", "camera_from_world")
@@ -70,7 +70,7 @@ def representation_pair(
     Args:
         function: on whose behalf errors speak.
         field: whose other parameters stay as they are; it is not changed.
-        names: of its parameters, and of `PLACES` in the batch.
+        names: of its parameters, and of `BATCH_INPUTS` in the batch.
         batch: what is rendered.
         seed, step, options: of the rendering.
 
@@ -79,9 +79,9 @@ def representation_pair(
         DtypeError: no `Representation`.
     """
     require_instance(function, "field", field, Representation)
-    places = [name for name in PLACES if hasattr(batch, name)]
-    _require_names(function, names, (*field.params, *places))
-    moved = [name for name in names if name in places]
+    movable = [name for name in BATCH_INPUTS if hasattr(batch, name)]
+    _require_names(function, names, (*field.params, *movable))
+    moved = [name for name in names if name in movable]
     options = replace(options, camera_adjoint=options.camera_adjoint or bool(moved))
 
     def forward(arrays: Arrays) -> tuple[dict[str, Array], Any]:
@@ -90,10 +90,10 @@ def representation_pair(
             name: _like(function, name, arrays[name], array) if name in arrays else array
             for name, array in field.params.items()
         }
-        seen: Any = batch
+        rendered: Any = batch
         if moved:
-            seen = replace(seen, **{name: np.asarray(arrays[name]) for name in moved})
-        outputs, context = drawn.render(seen, seed=seed, step=step, options=options)
+            rendered = replace(rendered, **{name: np.asarray(arrays[name]) for name in moved})
+        outputs, context = drawn.render(rendered, seed=seed, step=step, options=options)
         rows = len(outputs.color)
         none = np.zeros(rows, outputs.color.dtype)
         found = {name: getattr(outputs, name) for name in OUTPUTS}

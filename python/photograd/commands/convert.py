@@ -34,6 +34,32 @@ FormOption = Annotated[
     str, typer.Option("--colmap", help="Files of a COLMAP model: binary or text.")
 ]
 
+MeshOption = Annotated[
+    bool,
+    typer.Option(
+        "--mesh",
+        help="Make a mesh of a fit also where its own files have that suffix, as Gaussians do.",
+    ),
+]
+LevelOption = Annotated[
+    float | None,
+    typer.Option(
+        "--level",
+        min=0.0,
+        help="Extinction (1/m) on the surface of a mesh; by default one that halves light over "
+        "2 % of the diagonal of the box.",
+    ),
+]
+LatticeOption = Annotated[
+    int | None,
+    typer.Option(
+        "--resolution",
+        min=8,
+        max=1024,
+        help="Points along the longest edge, for a mesh of what is no grid; by default 128.",
+    ),
+]
+
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
@@ -63,31 +89,9 @@ def convert(
         int | None,
         typer.Option("--spz-version", min=2, max=4, help="Version of an .spz file; by default 3."),
     ] = None,
-    mesh: Annotated[
-        bool,
-        typer.Option(
-            "--mesh",
-            help="Make a mesh of a fit also where its own files have that suffix, as Gaussians do.",
-        ),
-    ] = False,
-    level: Annotated[
-        float | None,
-        typer.Option(
-            "--level",
-            min=0.0,
-            help="Extinction (1/m) on the surface of a mesh; by default one that halves light over "
-            "2 % of the diagonal of the box.",
-        ),
-    ] = None,
-    resolution: Annotated[
-        int | None,
-        typer.Option(
-            "--resolution",
-            min=8,
-            max=1024,
-            help="Points along the longest edge, for a mesh of what is no grid; by default 128.",
-        ),
-    ] = None,
+    mesh: MeshOption = False,
+    level: LevelOption = None,
+    resolution: LatticeOption = None,
     colmap: FormOption = "binary",
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame

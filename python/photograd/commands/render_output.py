@@ -190,11 +190,11 @@ def _clipped(values: Array) -> Array:
 
 def _depth_range(depths: Sequence[Array]) -> tuple[float, float]:
     """Between which 98 % of all depths lie."""
-    seen = np.concatenate([depth[np.isfinite(depth)].ravel() for depth in depths])
-    if not seen.size:
+    visible = np.concatenate([depth[np.isfinite(depth)].ravel() for depth in depths])
+    if not visible.size:
         expected = "something that the cameras see"
         raise RangeError(message("render", "--show depth", expected, "nothing", "name other ones"))
-    near, far = np.percentile(seen.astype(np.float64), [1, 99]).tolist()
+    near, far = np.percentile(visible.astype(np.float64), [1, 99]).tolist()
     return near, max(far, near * (1 + 1e-6) + 1e-12)
 
 

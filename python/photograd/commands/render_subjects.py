@@ -101,9 +101,9 @@ def _splats(found: GaussianFile, up: str) -> Subject:
     box = upright_box(found.gaussians, shown)
 
     def draw(camera: Camera) -> Picture:
-        seen = draw_splats(found.gaussians, camera, box=box, presentation=shown)
-        color = round_to_8_bits(np.clip(seen.color.astype(np.float64), 0, 1))
-        return Picture(color, seen.opacity, mean_depth(seen.depth, seen.opacity))
+        picture = draw_splats(found.gaussians, camera, box=box, presentation=shown)
+        color = round_to_8_bits(np.clip(picture.color.astype(np.float64), 0, 1))
+        return Picture(color, picture.opacity, mean_depth(picture.depth, picture.opacity))
 
     def from_capture(camera: Camera, world_from_source: FloatArray) -> Camera:
         if told.up is not None:  # written by this project, in its world, turned upright again

@@ -86,9 +86,9 @@ def mean_depth(depth: Array, opacity: Array) -> Array:
         depth: (H, W) the sum, in meters.
         opacity: (H, W) the sum of the weights.
     """
-    seen = opacity >= 1 / 255
+    visible = opacity >= 1 / 255
     mean = np.full(depth.shape, np.nan, depth.dtype)
-    np.divide(depth, opacity, out=mean, where=seen)
+    np.divide(depth, opacity, out=mean, where=visible)
     return mean
 
 

@@ -209,12 +209,14 @@ def _fused(model: Model, resolution: int, measure: Any) -> ColoredMesh:
     empty = np.zeros(len(points), bool)
     for camera in cameras:
         _, opacity, depth = render_field(field, camera, 1e-4)
-        seen = np.where(opacity >= 0.5, mean_depth(depth, opacity), np.inf)
+        surface = np.where(opacity >= 0.5, mean_depth(depth, opacity), np.inf)
         at, distance, inside = _looked_up(camera, points, along_ray=along_ray)
-        signed = (distance - seen.ravel()[at]) / (TRUNCATION * edge)  # above 0 behind the surface
+        signed = (distance - surface.ravel()[at]) / (
+            TRUNCATION * edge
+        )  # above 0 behind the surface
         free = inside & (signed < -1.0)
         near = inside & (np.abs(signed) <= 1.0)
-        empty |= free & np.isinf(seen.ravel()[at])
+        empty |= free & np.isinf(surface.ravel()[at])
         total[near] += signed[near].astype(np.float32)
         total[free] -= 1.0
         weight[near | free] += 1.0
@@ -223,7 +225,7 @@ def _fused(model: Model, resolution: int, measure: Any) -> ColoredMesh:
     values[empty] = np.minimum(values[empty], -1e-3)
     lattice = _padded(values.reshape(shape).astype(np.float32), first, spacing, -1.0)
     vertices, faces, normals = _marched(measure, lattice, 0.0)
-    colors = _seen_by(model, cameras, vertices, normals, edge, along_ray=along_ray)
+    colors = _mean_colors(model, cameras, vertices, normals, edge, along_ray=along_ray)
     return ColoredMesh(vertices, faces, normals, colors, 0.0)
 
 
@@ -240,7 +242,7 @@ def _looked_up(
     return row * camera.width + column, distance, inside
 
 
-def _seen_by(
+def _mean_colors(
     model: Model,
     cameras: list[Camera],
     vertices: Array,
