@@ -15,7 +15,7 @@ from photograd.types import Array
 
 _ARRAYS, _INDICES = 34962, 34963  # what a view holds, as OpenGL numbers it
 _COMPONENTS = {"<u2": 5123, "<u4": 5125, "<f4": 5126}
-_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 
 
 class GltfBytes:
@@ -36,7 +36,7 @@ class GltfBytes:
         return len(rows) - 1
 
     def attribute(self, rows: Array, *, bounds: bool = False) -> int:
-        """The number of an accessor of float32 rows (V, 2) or (V, 3), one a vertex."""
+        """The number of an accessor of float32 rows, (V,) or (V, 2) to (V, 4), one a vertex."""
         values = np.ascontiguousarray(rows, "<f4")
         more = {}
         if bounds:

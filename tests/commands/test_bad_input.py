@@ -286,7 +286,7 @@ def test_a_place_that_cannot_be_written(
     (tmp_path / "file").write_text("in the way")
     out = tmp_path / "file" / "result.gif"
     words = {
-        "render": ("render", model_folder, "--orbit", 1, "--size", 16),
+        "render": ("render", model_folder, "--frames", 1, "--size", 16),
         "evaluate": ("evaluate", model_folder, capture_folder),
         "gradients": ("gradients", model_folder, capture_folder, "--rays", 100),
     }[command]

@@ -123,7 +123,7 @@ def test_render_writes_a_gif_or_frames(
     photograd: Photograd, model_folder: Path, tmp_path: Path
 ) -> None:
     gif = tmp_path / "turn.gif"
-    words = ("render", model_folder, "--orbit", 5, "--size", 32, "--json")
+    words = ("render", model_folder, "--frames", 5, "--size", 32, "--json")
     done = photograd(*words, "--out", gif)
     assert done.code == 0
     assert done.result() == {"out": str(gif), "frames": 5}

@@ -63,7 +63,7 @@ def test_an_axis_that_the_header_names_stays_up(photograd: Photograd, tmp_path: 
         (picture,) = orbit_splats(found.gaussians, 1, size=32, presentation=shown)
         # Measured: 0 and, of the rounded one, 2/255.
         assert np.abs(picture - expected).max() < (4 / 255 if rotated else 1e-9)
-    words = ("--orbit", 1, "--size", 32, "--out", tmp_path / "a.png")
+    words = ("--frames", 1, "--size", 32, "--out", tmp_path / "a.png")
     assert photograd("render", tmp_path / "a.ply", *words).code == 0
     drawn = np.asarray(Image.open(tmp_path / "a.png"))
     assert drawn[0, 0].tolist() == [0, 128, 255]
@@ -90,7 +90,7 @@ def test_every_format_is_rendered(photograd: Photograd, scene: Path, shared_data
         if name != "a.ply":
             assert photograd("convert", scene, scene.with_name(name)).code == 0
         out = scene.with_name(f"pictures of {name}".replace(".", " "))
-        words = ("--orbit", 1, "--size", 32, "--out", out)
+        words = ("--frames", 1, "--size", 32, "--out", out)
         assert photograd("render", scene.with_name(name), *words).code == 0
         pictures[name] = np.asarray(Image.open(out / "frame_0000.png"), np.float64) / 255
     assert pictures["a.ply"].min() < 0.8
@@ -99,7 +99,7 @@ def test_every_format_is_rendered(photograd: Photograd, scene: Path, shared_data
     assert 0.01 < np.abs(pictures["a.splat"] - pictures["a.ply"]).max() < 0.2
     garden = shared_data / "splats/test_garden.npz"
     out = scene.with_name("garden")
-    words = ("--orbit", 1, "--size", 24, "--up=+z", "--out", out)
+    words = ("--frames", 1, "--size", 24, "--up=+z", "--out", out)
     assert photograd("render", garden, *words).code == 0
     assert np.asarray(Image.open(out / "frame_0000.png")).min() < 150
 

@@ -57,7 +57,7 @@ CIRCLE = {"size": 48, "elevation": 10}
 def frame(photograd: Photograd, model: Path, out: Path, *words: object) -> Array:
     """The first picture of an orbit, in 8 bits."""
     options = [word for name, value in CIRCLE.items() for word in (f"--{name}", value)]
-    done = photograd("render", model, "--orbit", 1, *options, "--out", out, *words)
+    done = photograd("render", model, "--frames", 1, *options, "--out", out, *words)
     assert done.code == 0, done.err
     return np.asarray(Image.open(out), np.int64)
 
@@ -127,7 +127,7 @@ def test_a_model_is_scored_and_drawn(
     scored = photograd("evaluate", model, capture_folder, "--out", strips, "--json").result()
     assert scored["psnr"] > 12
     assert strips.stat().st_size > 1000
-    drawn = photograd("render", model, "--orbit", 2, "--size", 32, "--out", turn, "--json")
+    drawn = photograd("render", model, "--frames", 2, "--size", 32, "--out", turn, "--json")
     assert drawn.result()["frames"] == 2
 
 

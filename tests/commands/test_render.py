@@ -24,9 +24,10 @@ def cloud(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("name", "frames", "says"),
     [
-        ("a.mp4", 3, "--out: expected a name that ends in .gif or .png, or one without a suffix"),
-        ("a.webm", 1, "a folder for PNG frames, got"),
-        ("a.png", 3, "--orbit: expected --orbit 1 for one picture a.png, got 3"),
+        ("a.mov", 3, "--out: expected a name that ends in .gif, .mp4, .webm, .npz or .png, or one"),
+        ("a.avi", 1, "a folder for PNG frames, got"),
+        ("no/a.mp4", 2, "expected a file in a folder that exists"),
+        ("a.png", 3, "--frames: expected --frames 1 for one picture a.png, got 3"),
         ("no/a.gif", 3, "expected a file in a folder that exists"),
         ("full", 3, "full, a file"),
         ("folder.gif", 3, "expected a file in a folder that exists"),
@@ -38,7 +39,9 @@ def test_names_that_mean_nothing_are_refused_before_drawing(
     (cloud.parent / "full").write_text("taken")
     (cloud.parent / "folder.gif").mkdir()
     before = sorted(cloud.parent.iterdir())
-    done = photograd("render", cloud, "--orbit", frames, "--size", 16, "--out", cloud.parent / name)
+    done = photograd(
+        "render", cloud, "--frames", frames, "--size", 16, "--out", cloud.parent / name
+    )
     assert done.code == 1
     assert says in done.err
     assert done.err.count("\n") == 1
@@ -48,7 +51,7 @@ def test_names_that_mean_nothing_are_refused_before_drawing(
 def test_names_say_what_is_written(photograd: Photograd, cloud: Path) -> None:
     for name, frames in (("a.gif", 2), ("frames", 2), ("still.PNG", 1)):
         out = cloud.parent / name
-        done = photograd("render", cloud, "--orbit", frames, "--size", 16, "--out", out, "--json")
+        done = photograd("render", cloud, "--frames", frames, "--size", 16, "--out", out, "--json")
         assert done.code == 0, done.err
         assert done.result()["frames"] == frames
     assert len(list((cloud.parent / "frames").iterdir())) == 2
@@ -62,7 +65,7 @@ def test_a_picture_that_is_not_finite_is_an_error(photograd: Photograd, tmp_path
     g.sh[:] = 3.3e38
     write_gaussians(tmp_path / "a.ply", g)
     out = tmp_path / "a.gif"
-    done = photograd("render", tmp_path / "a.ply", "--orbit", 6, "--size", 24, "--out", out)
+    done = photograd("render", tmp_path / "a.ply", "--frames", 6, "--size", 24, "--out", out)
     assert done.code == 1
     assert "error: splat.render: color: expected finite values" in done.err
     assert "the first in pixel (" in done.err

@@ -38,7 +38,7 @@ def test_a_texture_is_fitted_to_the_mesh_of_a_file(photograd: Photograd, tmp_pat
     assert (model / "mesh.glb").read_bytes()[:4] == b"glTF"
 
     picture = tmp_path / "picture.png"
-    words = ("render", model, "--orbit", 1, "--size", 32, "--out", picture)
+    words = ("render", model, "--frames", 1, "--size", 32, "--out", picture)
     assert photograd(*words).code == 0
     assert read_image(picture)[..., :3].std() > 0.05
 

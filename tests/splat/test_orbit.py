@@ -120,7 +120,7 @@ def test_a_file_of_one_gaussian_is_drawn(tmp_path: Path) -> None:
         out = tmp_path / f"{name}.png"
         app = Typer()
         register(app)
-        words = ["render", f"{tmp_path / name}", "--orbit", "1", "--size", "24", "--out", f"{out}"]
+        words = ["render", f"{tmp_path / name}", "--frames", "1", "--size", "24", "--out", f"{out}"]
         done = CliRunner().invoke(app, words)
         assert done.exit_code == 0, done.output
         assert np.asarray(Image.open(out))[12, 12, 1] < 100
@@ -130,7 +130,7 @@ def test_the_command_renders_a_ply_file(tmp_path: Path) -> None:
     write_gaussian_ply(tmp_path / "a.ply", oracle.cloud(40, 1))
     app = Typer()
     register(app)
-    words = ["render", f"{tmp_path / 'a.ply'}", "--orbit", "3", "--size", "24"]
+    words = ["render", f"{tmp_path / 'a.ply'}", "--frames", "3", "--size", "24"]
     done = CliRunner().invoke(app, [*words, "--out", f"{tmp_path / 'a.gif'}", "--up", "+z"])
     assert done.exit_code == 0, done.output
     with Image.open(tmp_path / "a.gif") as picture:

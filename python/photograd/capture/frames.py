@@ -86,6 +86,33 @@ def rotation_from_quaternion(quaternion: FloatArray) -> FloatArray:
     )
 
 
+def quaternion_from_rotation(rotation: FloatArray) -> FloatArray:
+    """Unit quaternion (w, x, y, z), w >= 0, of a (3, 3) rotation.
+
+    The largest of the four squares, which the diagonal gives, is taken first: it is at least 1/4,
+    and the others follow from sums and differences across the diagonal.
+
+    Args:
+        rotation: (3, 3), orthonormal with determinant 1.
+    """
+    r = np.asarray(rotation, np.float64)
+    x, y, z = r[0, 0], r[1, 1], r[2, 2]
+    squares = np.array([x + y + z, x - y - z, y - x - z, z - x - y]) + 1.0  # 4 q^2
+    k = int(np.argmax(squares))
+    w_products = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]  # 4 w (x, y, z)
+    yz, zx, xy = r[1, 2] + r[2, 1], r[2, 0] + r[0, 2], r[0, 1] + r[1, 0]  # 4 y z, ...
+    products = np.array(
+        [
+            [squares[0], *w_products],
+            [w_products[0], squares[1], xy, zx],
+            [w_products[1], xy, squares[2], yz],
+            [w_products[2], zx, yz, squares[3]],
+        ]
+    )
+    quaternion: FloatArray = products[k] / norm(products[k])
+    return -quaternion if quaternion[0] < 0.0 else quaternion
+
+
 def rotation_from_axis_angle(vector: FloatArray) -> FloatArray:
     """(3, 3) rotation about `vector` (3,) by its length in radians (Rodrigues' formula)."""
     angle = norm(np.asarray(vector, np.float64))

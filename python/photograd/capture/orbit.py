@@ -1,6 +1,8 @@
-"""Cameras on a circle around a box, looking at its middle."""
+"""Cameras around a box, looking at its middle: on a circle, rising, or in all directions."""
 
 from __future__ import annotations
+
+from typing import TypeAlias
 
 import numpy as np
 
@@ -8,14 +10,17 @@ from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
+Size: TypeAlias = int | tuple[int, int]
+"""Of a picture in pixels: width and height, or one number for both."""
+
 
 def orbit_cameras(
-    box: Array, count: int, *, size: int, elevation: float = 25.0, field_of_view: float = 40.0
+    box: Array, count: int, *, size: Size, elevation: float = 25.0, field_of_view: float = 40.0
 ) -> list[Camera]:
-    """`count` square cameras of `size` pixels around the vertical (+Y) axis.
+    """`count` cameras of `size` pixels around the vertical (+Y) axis.
 
-    elevation and field_of_view in degrees; the distance is such that the box's sphere fills 90 % of
-    the view.
+    elevation and field_of_view (across the shorter edge) in degrees; the distance is such that the
+    box's sphere fills 90 % of the view.
 
     Raises:
         RangeError: a box without extent; what `Camera` raises.
@@ -28,10 +33,39 @@ def orbit_cameras(
     return _around("orbit_cameras", box, np.array(outward), size, field_of_view)
 
 
-def spiral_cameras(
-    box: Array, count: int, *, size: int, turn: float = 0.0, field_of_view: float = 40.0
+def helix_cameras(
+    box: Array,
+    count: int,
+    *,
+    size: Size,
+    elevation: float = 60.0,
+    turns: float = 2.0,
+    field_of_view: float = 40.0,
 ) -> list[Camera]:
-    """`count` square cameras of `size` pixels in all directions around a box, evenly spread.
+    """`count` cameras that turn around the vertical axis and rise from the horizon.
+
+    Args:
+        box: (2, 3) corners in the world, meters.
+        count: of cameras.
+        size: pixels.
+        elevation: of the last camera, in degrees above the horizon; the first is level.
+        turns: around the axis.
+        field_of_view: across the shorter edge, in degrees.
+
+    Raises:
+        RangeError: a box without extent; what `Camera` raises.
+    """
+    share = np.arange(count) / max(count - 1, 1)
+    tilt, turn = np.radians(elevation) * share, 2 * np.pi * turns * share
+    level = np.cos(tilt)
+    outward = np.stack([level * np.sin(turn), np.sin(tilt), level * np.cos(turn)], axis=-1)
+    return _around("helix_cameras", box, outward, size, field_of_view)
+
+
+def spiral_cameras(
+    box: Array, count: int, *, size: Size, turn: float = 0.0, field_of_view: float = 40.0
+) -> list[Camera]:
+    """`count` cameras of `size` pixels in all directions around a box, evenly spread.
 
     They lie on a spiral from below to above, each a golden angle on [Vogel1979]. `turn` and
     field_of_view in degrees; the distance is that of `orbit_cameras`.
@@ -39,7 +73,7 @@ def spiral_cameras(
     Args:
         box: (2, 3) corners in the world, meters.
         count: of cameras.
-        size: pixels along an edge.
+        size: pixels.
         turn: of the whole spiral about the vertical axis.
         field_of_view: of each camera.
 
@@ -55,7 +89,7 @@ def spiral_cameras(
 
 
 def _around(
-    function: str, box: Array, outward: Array, size: int, field_of_view: float
+    function: str, box: Array, outward: Array, size: Size, field_of_view: float
 ) -> list[Camera]:
     """A camera in each direction (N, 3) from the middle of a box."""
     center = np.asarray(box, np.float64).mean(axis=0)
@@ -65,10 +99,18 @@ def _around(
         raise RangeError(message(function, "box", "two different finite corners", got))
     half = np.radians(field_of_view) / 2
     distance = radius / np.sin(half) / 0.9
-    focal = 0.5 * size / np.tan(half)
-    middle = size / 2
+    width, height = (size, size) if isinstance(size, int) else size
+    focal = 0.5 * min(width, height) / np.tan(half)
     return [
-        Camera(size, size, focal, focal, middle, middle, look_at(center + distance * d, center))
+        Camera(
+            width,
+            height,
+            focal,
+            focal,
+            width / 2,
+            height / 2,
+            look_at(center + distance * d, center),
+        )
         for d in outward
     ]
 

@@ -59,7 +59,7 @@ class View:
         Raises:
             IoError: the file is missing, damaged, or not of the size that it had on loading.
         """
-        source = self._source_camera()
+        source = self.source_camera()
         image = read_image(self.image) if isinstance(self.image, Path) else self.image
         shape = (source.height, source.width, 4)
         if image.shape != shape:
@@ -93,7 +93,7 @@ class View:
         Raises:
             IoError: the mask file is missing, damaged, or not of the size of the photograph.
         """
-        source = self._source_camera()
+        source = self.source_camera()
         mask = np.ones((source.height, source.width, 4), dtype=np.float32)
         if self.mask_file is not None:
             loaded = read_image(self.mask_file)
@@ -132,7 +132,8 @@ class View:
         camera, factor = self.camera, self.downscale
         return self.source_size or (camera.width * factor, camera.height * factor)
 
-    def _source_camera(self) -> Camera:
+    def source_camera(self) -> Camera:
+        """The pinhole camera of the file's pixels, before `downscale`; its lens is `distortion`."""
         width, height = self._source_size()
         camera, factor = self.camera, self.downscale
         return replace(

@@ -1,4 +1,4 @@
-"""`photograd convert`: Gaussians or meshes from one file format to another, and what changed."""
+"""`photograd convert`: Gaussians, meshes, models and cameras to files of other programs."""
 
 from __future__ import annotations
 
@@ -8,14 +8,57 @@ from typing import Annotated, Any
 import typer
 from photograd_course.cli import DebugOption, JsonOption, emit
 
+from photograd._checkpoint import FILE_NAME
+from photograd._checks import typed
+from photograd.capture.export import Form
+from photograd.commands.convert_capture import CAMERAS, convert_capture
+from photograd.commands.convert_fit import convert_fit
 from photograd.commands.convert_model import READABLE, convert_model
 from photograd.commands.convert_model import WRITABLE as GLTF
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import differences
-from photograd.splats.files import SUFFIXES, WRITABLE, codings_of, read_gaussians, write_gaussians
+from photograd.splats.files import (
+    SUFFIXES,
+    WRITABLE,
+    codings_of,
+    holds_gaussians,
+    is_gaussian_ply,
+    read_gaussians,
+    reread,
+    write_gaussians,
+)
 from photograd.splats.frames import USUAL_UP, dropped, with_usual_up
 
 SPZ_VERSION = 3
+FormOption = Annotated[
+    str, typer.Option("--colmap", help="Files of a COLMAP model: binary or text.")
+]
+
+MeshOption = Annotated[
+    bool,
+    typer.Option(
+        "--mesh",
+        help="Make a mesh of a fit also where its own files have that suffix, as Gaussians do.",
+    ),
+]
+LevelOption = Annotated[
+    float | None,
+    typer.Option(
+        "--level",
+        min=0.0,
+        help="Extinction (1/m) on the surface of a mesh; by default one that halves light over "
+        "2 % of the diagonal of the box.",
+    ),
+]
+LatticeOption = Annotated[
+    int | None,
+    typer.Option(
+        "--resolution",
+        min=8,
+        max=1024,
+        help="Points along the longest edge, for a mesh of what is no grid; by default 128.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -27,48 +70,88 @@ def convert(
     source: Annotated[
         Path,
         typer.Argument(
-            help=f"File of Gaussians: {', '.join(SUFFIXES)}; or, to make glTF of it, a scene or "
-            f"meshes: {', '.join(READABLE)}.",
+            help=f"File of Gaussians: {', '.join(SUFFIXES)}; a scene or meshes: "
+            f"{', '.join(READABLE)}; the folder of a fit, or its model.npz; or the folder of a "
+            "capture.",
             metavar="IN",
         ),
     ],
     target: Annotated[
-        Path, typer.Argument(help=f"File to write: {', '.join((*WRITABLE, *GLTF))}.", metavar="OUT")
+        Path,
+        typer.Argument(
+            help=f"Of Gaussians: {', '.join(WRITABLE)}. Of scenes and meshes: {', '.join(GLTF)}. "
+            "Of a fit: a mesh .glb or .ply, a grid .vdb, or all arrays .npz. Of a capture: "
+            f"transforms{CAMERAS}, or a folder for a COLMAP model.",
+            metavar="OUT",
+        ),
     ],
     spz_version: Annotated[
         int | None,
         typer.Option("--spz-version", min=2, max=4, help="Version of an .spz file; by default 3."),
     ] = None,
+    mesh: MeshOption = False,
+    level: LevelOption = None,
+    resolution: LatticeOption = None,
+    colmap: FormOption = "binary",
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
-    """Convert a file of Gaussians, and say by how much each attribute was rounded.
+    """Convert Gaussians, scenes, fitted models and captures to files of other programs.
 
-    What is up stays up; what OUT has no place for, such as a background, is named.
+    Of Gaussians it says by how much each attribute was rounded. What is up stays up; what OUT has
+    no place for, such as a background, is named.
 
-    Where OUT is .glb or .gltf, IN is a scene or a mesh file; what the file cannot hold, or is read
-    back changed, is named.
+    A mesh of a fit is found by marching cubes and has the colors of the fit at its vertices. The
+    cameras of a capture are written as transforms.json or as a COLMAP model; photographs stay
+    where they are.
 
     Example: photograd convert scene.ply scene.spz
+
+    Example: photograd convert model mesh.glb
+
+    Example: photograd convert photos transforms.json
     """
-    if spz_version is not None and target.suffix.lower() != ".spz":
+    _check_other(source, target)
+    suffix, form = target.suffix.lower(), typed("convert", "--colmap", Form, colmap)
+    if spz_version is not None and suffix != ".spz":
         expected = "a file .spz to write with --spz-version"
         raise RangeError(message("convert", "OUT", expected, target.name, "leave the option out"))
-    if target.suffix.lower() in GLTF:
-        _check_other(source, target)
-        emit(convert_model(source, target), as_json=as_json, title="convert")
+    if (source / FILE_NAME).is_file() or _is_model(source):
+        found = convert_fit(source, target, mesh=mesh, resolution=resolution, level=level)
+        emit(found, as_json=as_json, title="convert")
         return
-    version = SPZ_VERSION if spz_version is None else spz_version
-    emit(convert_file(source, target, version), as_json=as_json, title="convert")
+    options = {"--mesh": mesh, "--level": level is not None, "--resolution": resolution is not None}
+    for option, given in options.items():
+        if given:
+            expected = f"a fit to make a mesh of with {option}"
+            remedy = "leave the option out"
+            raise RangeError(message("convert", "IN", expected, source.name, remedy))
+    if source.is_dir() or source.suffix.lower() == CAMERAS:
+        found = convert_capture(source, target, form)
+    elif suffix in GLTF and not _are_gaussians(source):
+        found = convert_model(source, target)
+    else:
+        found = convert_file(source, target, SPZ_VERSION if spz_version is None else spz_version)
+    emit(found, as_json=as_json, title="convert")
+
+
+def _is_model(source: Path) -> bool:
+    return source.suffix.lower() == ".npz" and source.is_file() and not holds_gaussians(source)
+
+
+def _are_gaussians(source: Path) -> bool:
+    """By the name, and of a .ply file by its header: it may hold a mesh as well."""
+    if source.suffix.lower() == ".ply":
+        return is_gaussian_ply(source)
+    return holds_gaussians(source)
 
 
 def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]:
     """Convert and read back; returns what the command reports.
 
     Raises:
-        IoError: a bad file, or the same for both.
+        IoError: a bad file, or a name that no format has.
     """
-    _check_other(source, target)
     before = read_gaussians(source)
     gaussians, told, suffix = before.gaussians, before.presentation, target.suffix.lower()
     left_out = []
@@ -76,7 +159,7 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
         gaussians = with_usual_up(gaussians, told.up)
         left_out.append(f"rotated from {told.up} up to {USUAL_UP} up, which {suffix} files have")
     write_gaussians(target, gaussians, spz_version=spz_version, presentation=told)
-    after = read_gaussians(target)
+    written, after = reread(target, gaussians)
     if after.gaussians.degree < gaussians.degree:
         degrees = f"{after.gaussians.degree + 1} to {gaussians.degree}"
         left_out.append(f"harmonics of degree {degrees} are dropped")
@@ -92,7 +175,7 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
             "format_allows": float(f"{each.bound:.4g}"),
             "clamped": each.clamped,
         }
-        for each in differences(gaussians, after.gaussians, codings)
+        for each in differences(written, after.gaussians, codings)
     ]
     return {
         "gaussians": len(before.gaussians),

@@ -73,15 +73,23 @@ class VoxelField(Fittable):
         slope: Array = self.policy.density_scale * sigmoid(raw)
         return slope
 
-    def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
-        """Write sigma_t (1/m) of every voxel to a .vdb file, or all arrays to an .npz file."""
-        if path.suffix.lower() != ".vdb":
-            return super().export(path, background)
+    def extinction(self) -> tuple[Array, Array]:
+        """sigma_t (X, Y, Z) in 1/m, float32, and the (4, 4) matrix from indices to the world.
+
+        Index [0, 0, 0] is the middle of the first voxel.
+        """
         raw = self.density_rows(self.params).astype(np.float64)
         sigma_t = self.to_voxels((self.policy.density_scale * softplus(raw)).astype(np.float32))
         voxel = (self.box[1] - self.box[0]) / self.voxel_shape
         matrix = np.diag([*voxel, 1.0])
         matrix[:3, 3] = self.box[0] + voxel / 2
+        return sigma_t, matrix
+
+    def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
+        """Write sigma_t (1/m) of every voxel to a .vdb file, or all arrays to an .npz file."""
+        if path.suffix.lower() != ".vdb":
+            return super().export(path, background)
+        sigma_t, matrix = self.extinction()
         write_vdb(path, [SparseGrid.from_dense(sigma_t, world_from_index=matrix)])
         return ("density is sigma_t in 1/m, +y up; a .vdb file has no color of the field",)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,51 @@ def _require_all(field: Fittable, outputs: Outputs) -> tuple[Array, Array, Array
     return color, opacity, depth
 
 
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What a camera sees, for people to look at and for programs to measure.
+
+    Attributes:
+        color: (H, W, 3) display values over the background, multiples of 1/255.
+        opacity: (H, W), 0 to 1.
+        depth: (H, W) mean distance in meters, along the ray or, of Gaussians and meshes, along the
+            viewing axis; NaN where hardly anything is, an opacity below 1/255.
+    """
+
+    color: Array
+    opacity: Array
+    depth: Array
+
+
+def mean_depth(depth: Array, opacity: Array) -> Array:
+    """Mean distance (H, W) from a sum of weight times distance; NaN for opacities below 1/255.
+
+    Args:
+        depth: (H, W) the sum, in meters.
+        opacity: (H, W) the sum of the weights.
+    """
+    visible = opacity >= 1 / 255
+    mean = np.full(depth.shape, np.nan, depth.dtype)
+    np.divide(depth, opacity, out=mean, where=visible)
+    return mean
+
+
+def draw_field(
+    field: Fittable, background: Array | None, camera: Camera, stop: float = 1e-4
+) -> Picture:
+    """The field as a camera sees it, over white or a linear background (3,).
+
+    Args:
+        field: what is drawn.
+        background: linear (3,) behind it, or None for white.
+        camera: where it is seen from.
+        stop: transmittance below which a ray ends.
+    """
+    color, opacity, depth = render_field(field, camera, stop)
+    over = _over_background(field, background, color, opacity)
+    return Picture(over, opacity, mean_depth(depth, opacity))
+
+
 def display_field(
     field: Fittable, background: Array | None, camera: Camera, stop: float = 1e-4
 ) -> Array:
@@ -74,6 +120,13 @@ def display_field(
         stop: transmittance below which a ray ends.
     """
     color, opacity, _ = render_field(field, camera, stop)
+    return _over_background(field, background, color, opacity)
+
+
+def _over_background(
+    field: Fittable, background: Array | None, color: Array, opacity: Array
+) -> Array:
+    """Premultiplied colors of a field over white or a linear background, in display values."""
     if field.color_space == "display":
         behind = 1.0 if background is None else srgb_encode(background)
         over = color + (1 - opacity[..., None]) * behind
@@ -103,9 +156,6 @@ def portrait(field: Fittable, background: Array | None) -> Array:
         field: what is drawn.
         background: linear (3,) behind it, or None for white.
     """
-    own = field.turntable(1, size=PORTRAIT, elevation=25.0, background=background)
-    if own is not None:
-        return next(iter(own))
     (camera,) = orbit_cameras(field.box, 1, size=PORTRAIT)
     return display_field(field, background, camera)
 

@@ -270,20 +270,6 @@ class Fittable(Representation):
         """The arrays without which it could not be drawn."""
         return {**self.params, **self.state()}
 
-    def turntable(
-        self, count: int, *, size: int, elevation: float, background: Array | None
-    ) -> Iterator[Array] | None:
-        """Pictures from a circle of cameras, where they differ from those of its box; or None.
-
-        Args:
-            count: of cameras.
-            size: pixels along an edge.
-            elevation: of the cameras, in degrees.
-            background: linear (3,), or None for white.
-        """
-        del count, size, elevation, background
-        return None
-
     def gradient_image(self, gradients: Mapping[str, Array]) -> Array | None:
         """(H, W) what a signed picture of the parameters' gradient shows; None for no picture.
 

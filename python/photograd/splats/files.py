@@ -16,11 +16,19 @@ from photograd._ply import MAX_HEADER_BYTES
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import Coding, Codings
 from photograd.splats.frames import UNSTATED, Presentation, read_presentation
+from photograd.splats.gltf_files import GLTF, gltf_codings, stored_gaussians, write_gaussian_gltf
 from photograd.splats.ply_files import (
     is_compressed,
     read_compressed_ply,
     read_gaussian_ply,
     write_gaussian_ply,
+)
+from photograd.splats.sog_files import (
+    decode_sog,
+    encode_sog,
+    sog_codings,
+    sorted_gaussians,
+    write_gaussian_sog,
 )
 from photograd.splats.splat_files import (
     is_point_npz,
@@ -34,7 +42,7 @@ from photograd.splats.spz_files import read_gaussian_spz, spz_codings, write_gau
 from photograd.splats.spz_streams import GZIP, MAGIC
 
 SUFFIXES = (".ply", ".splat", ".spz", ".npz")
-WRITABLE = (".ply", ".splat", ".spz")
+WRITABLE = (".ply", ".splat", ".spz", ".sog", *GLTF)
 _READ, _WRITE = "read_gaussians", "write_gaussians"
 _EXACT = ("means", "log_scales", "rotation", "opacity", "color", "harmonics")
 
@@ -94,11 +102,11 @@ def write_gaussians(
     """Write Gaussians in the format that the name's end says, whole or not at all.
 
     Args:
-        path: .ply, .splat or .spz.
+        path: .ply, .splat, .spz, .sog, .glb or .gltf.
         gaussians: with -y up, but for a .ply file whose `presentation` says otherwise.
         spz_version: of an .spz file.
         presentation: kept as far as the format has a place: all of it in a .ply file, antialiasing
-            in an .spz file.
+            in an .spz or .sog file.
 
     Raises:
         IoError: another end of the name, or the file cannot be written.
@@ -122,7 +130,11 @@ def write_gaussians(
         ".spz": lambda: write_gaussian_spz(
             path, gaussians, version=spz_version, antialiased=presentation.antialiased is True
         ),
+        ".sog": lambda: write_gaussian_sog(
+            path, gaussians, antialiased=presentation.antialiased is True
+        ),
     }
+    writers |= dict.fromkeys(GLTF, lambda: write_gaussian_gltf(path, gaussians))
     writers[suffix]()
 
 
@@ -138,7 +150,36 @@ def codings_of(path: Path, gaussians: Gaussians, *, spz_version: int = 3) -> Cod
         return splat_codings(gaussians)
     if path.suffix.lower() == ".spz":
         return spz_codings(gaussians, spz_version)
+    if path.suffix.lower() == ".sog":
+        return sog_codings(gaussians)
+    if path.suffix.lower() in GLTF:
+        return gltf_codings(gaussians)
     return {name: Coding(0.0) for name in _EXACT}
+
+
+def reread(path: Path, gaussians: Gaussians) -> tuple[Gaussians, GaussianFile]:
+    """What a file that was just written holds, beside what was written, row by row.
+
+    Args:
+        path: of the file.
+        gaussians: that `write_gaussians` has been given.
+
+    Returns:
+        The Gaussians in the order of the file, and what it holds: read again or, of formats that
+        are only written here, decoded from what went into the file.
+
+    Raises:
+        IoError: as for `read_gaussians`.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".sog":
+        ordered = sorted_gaussians(gaussians)
+        line = "sorted along a Morton curve; not read back: photograd has no reader of .sog files"
+        return ordered, GaussianFile(decode_sog(*encode_sog(ordered)), "sog", (line,))
+    if suffix in GLTF:
+        line = "+y up, as glTF has it; not read back: photograd draws no Gaussians of glTF files"
+        return gaussians, GaussianFile(stored_gaussians(gaussians), "gltf", (line,))
+    return gaussians, read_gaussians(path)
 
 
 def holds_gaussians(path: Path) -> bool:
@@ -149,6 +190,19 @@ def holds_gaussians(path: Path) -> bool:
     """
     suffix = path.suffix.lower()
     return is_point_npz(path) if suffix == ".npz" else suffix in SUFFIXES
+
+
+def is_gaussian_ply(path: Path) -> bool:
+    """Whether a .ply file holds Gaussians, as its header says; a mesh may have the same suffix.
+
+    Args:
+        path: of a file.
+
+    Raises:
+        IoError: no file.
+    """
+    head = read_file(_READ, path, MAX_HEADER_BYTES).partition(b"end_header")[0]
+    return is_compressed(head) or b" f_dc_0" in head
 
 
 def _read_ply(path: Path, head: bytes, memory_limit: int | None) -> GaussianFile:

@@ -204,7 +204,7 @@ def dropped(suffix: str, presentation: Presentation) -> list[str]:
     if presentation.background is not None:
         lines.append(f"the background {_shown(presentation.background)} (display values)")
     antialiased = presentation.antialiased
-    if antialiased is not None and not (antialiased and suffix == ".spz"):
+    if antialiased is not None and not (antialiased and suffix in (".spz", ".sog")):
         lines.append(f"that they were fitted with{'' if antialiased else 'out'} antialiasing")
     return [f"{line} is dropped: {suffix} files have no place for it" for line in lines]
 

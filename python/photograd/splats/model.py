@@ -10,7 +10,7 @@ the view later.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self
@@ -44,7 +44,7 @@ from photograd.representation import (
 from photograd.splats.density import DensityControl, Grad2dStatistics, NoControl
 from photograd.splats.files import WRITABLE, write_gaussians
 from photograd.splats.frames import USUAL_UP, WORLD_UP, Presentation, half_turn
-from photograd.splats.orbit import orbit_splats, scene_box
+from photograd.splats.orbit import scene_box
 from photograd.splats.splatting import (
     Gaussians,
     SplatContext,
@@ -278,15 +278,6 @@ class GaussianScene(Fittable):
     def stored(self) -> dict[str, Array]:
         """The parameters; the state serves the fit alone."""
         return dict(self.params)
-
-    def turntable(
-        self, count: int, *, size: int, elevation: float, background: Array | None
-    ) -> Iterator[Array]:
-        """The same pictures as of an exported file."""
-        told = Presentation.of_fit(WORLD_UP, background, antialiased=self.policy.antialiased)
-        return orbit_splats(
-            self.gaussians, count, size=size, elevation=elevation, presentation=told
-        )
 
     def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
         """Write a file of Gaussians, half a turn about x away from the world: -y is up there."""

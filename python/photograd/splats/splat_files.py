@@ -19,6 +19,7 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from photograd_course.atomic_io import atomic_write
 from photograd_course.input_files import read_file, require_file
 
@@ -204,13 +205,7 @@ def neighbor_spacing(points: Array) -> Array:
     extent = float(np.ptp(points, axis=0).max(initial=0.0))
     if n < 2 or not extent > 0.0:
         return np.full(n, 1e-3)
-    cells = ((points - points.min(axis=0)) * ((_LEVELS - 1) / extent)).astype(np.uint64)
-    code = np.zeros(n, np.uint64)
-    for bit in range(10):
-        for axis in range(3):
-            level = cells[:, axis] >> np.uint64(bit) & np.uint64(1)
-            code |= level << np.uint64(3 * bit + axis)
-    order = np.argsort(code, kind="stable")
+    order = morton_order(points)
     along = points[order]
     distances = np.full((n, 2 * WINDOW), np.inf)
     for step in range(1, min(WINDOW, n - 1) + 1):
@@ -222,6 +217,23 @@ def neighbor_spacing(points: Array) -> Array:
     size = np.empty(n)
     size[order] = 0.5 * mean.clip(1e-6 * extent, MAX_SPACING * max(np.median(mean), 1e-6 * extent))
     return size
+
+
+def morton_order(points: Array) -> NDArray[np.int64]:
+    """(N,) the order of points along a Morton curve through the cells of a 1024^3 grid.
+
+    Args:
+        points: (N, 3), finite; those in one cell keep their order.
+    """
+    extent = float(np.ptp(points, axis=0).max(initial=0.0))
+    scale = (_LEVELS - 1) / extent if extent > 0.0 else 0.0
+    cells = ((points - points.min(axis=0)) * scale).astype(np.uint64)
+    code = np.zeros(len(points), np.uint64)
+    for bit in range(10):
+        for axis in range(3):
+            level = cells[:, axis] >> np.uint64(bit) & np.uint64(1)
+            code |= level << np.uint64(3 * bit + axis)
+    return np.argsort(code, kind="stable")
 
 
 def _refusal(path: Path, expected: str, got: str) -> IoError:
