@@ -52,6 +52,8 @@ from photograd.textures import sample
 from photograd.types import Array, FloatArray
 
 SMOOTHNESS = SurfacePolicy().smoothness
+TEXEL_RATE = 0.1
+"""Adam's rate of raw texels."""
 TEXELS_PER_EDGE = 4
 """Of a sphere that a fit starts from: texels along an edge of a triangle."""
 
@@ -237,7 +239,7 @@ class TexturedSurface(Surface):
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Vertices, and texels; Adam moves a texel by about its rate."""
-        texels = ParamSpec(self.params["texels"].shape, "1", (-20.0, 20.0), 0.05, "none")
+        texels = ParamSpec(self.params["texels"].shape, "1", (-20.0, 20.0), TEXEL_RATE, "none")
         return {"differential": self.vertex_spec(), "texels": texels}
 
     def render(
