@@ -83,7 +83,13 @@ def test_shape_texture_and_opacity_come_back_from_a_sphere(tmp_path: Path) -> No
 
 
 def test_a_stopped_fit_ends_with_the_same_bits(tmp_path: Path) -> None:
-    few: dict[str, Any] = {"size": 16, "steps": 6, "resolution": 16, "laplacian": 0.1, "normal_consistency": 0.1}
+    few: dict[str, Any] = {
+        "size": 16,
+        "steps": 6,
+        "resolution": 16,
+        "laplacian": 0.1,
+        "normal_consistency": 0.1,
+    }
     run(start(**few), tmp_path / "straight")
     run(start(**few), tmp_path / "stopped", until=3)
     run(Fit.resume(capture(16), tmp_path / "stopped"), tmp_path / "stopped")

@@ -34,12 +34,21 @@ def raw_texels(rgba: FloatArray, start_opacity: float | None) -> FloatArray:
     channels = 3
     if start_opacity is not None:
         channels = 4
-        if bool((rgba[..., 3] == 1).all()):
+        if is_opaque(rgba):
             held = np.full_like(rgba[..., 3:], start_opacity)
             rgba = np.concatenate([rgba[..., :3], held], axis=2)
     kept = np.clip(rgba[..., :channels], CLOSEST, 1 - CLOSEST)
     found: FloatArray = log(kept) - log(1 - kept)
     return found
+
+
+def is_opaque(rgba: FloatArray) -> bool:
+    """Whether no texel is transparent, but for rounding in a lookup.
+
+    Args:
+        rgba: (H, W, 4).
+    """
+    return bool((rgba[..., 3] >= 1 - 1e-9).all())
 
 
 def resampled(rgba: FloatArray, size: int) -> FloatArray:

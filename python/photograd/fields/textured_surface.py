@@ -32,6 +32,7 @@ from photograd.fields.surface_files import UNLIT, write_glowing_mesh
 from photograd.fields.surface_texels import (
     START_OPACITY,
     checked_places,
+    is_opaque,
     parts_of,
     raw_texels,
     resampled,
@@ -310,7 +311,7 @@ class TexturedSurface(Surface):
             vertices, unwrapped, rgba = first.vertices, first.unwrapped, first.rgba()
         else:
             vertices, unwrapped, rgba = parts_of(first, size)
-        if not options.opacity and (rgba[..., 3] < 1).any():
+        if not options.opacity and not is_opaque(rgba):
             expected, remedy = "an opaque model", "--opacity recovers that, too"
             raise RangeError(message("Fit.start", "start_from", expected, "opacity", remedy))
         start_opacity = START_OPACITY if options.opacity else None

@@ -44,8 +44,9 @@ from photograd.geometry.unwrap import unwrap
 from photograd.representation import ImageBatch, Outputs, RenderOptions
 from photograd.types import Array, FloatArray
 
-VERTEX_STEP = 0.005
-"""Rate of the vertices at the first step, in mean lengths of an edge."""
+VERTEX_STEP, TEXTURED_VERTEX_STEP = 0.005, 0.015
+"""Rate of the vertices at the first step, in mean lengths of an edge; a texture bears longer ones,
+since its colors do not depend on where few vertices lie."""
 LAST_RATE = 0.1
 """Part of all rates that is left at the last step."""
 SMALLEST_TEXTURE = 8
@@ -243,7 +244,8 @@ class Simplification:
         self._views = _views(dense, spiral_cameras(dense.box, options.views, size=options.size))
         self._optimizer = Adam()
         a, b = (start.vertices[start.edges.ends[:, k]] for k in range(2))
-        self._vertex_rate = VERTEX_STEP * float(np.sqrt(np.square(b - a).sum(axis=1)).mean())
+        step = TEXTURED_VERTEX_STEP if isinstance(start, TexturedSurface) else VERTEX_STEP
+        self._vertex_rate = step * float(np.sqrt(np.square(b - a).sum(axis=1)).mean())
 
     @property
     def steps(self) -> int:

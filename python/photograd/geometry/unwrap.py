@@ -28,14 +28,14 @@ def unwrap(vertices: Array, faces: Array, size: int) -> tuple[FloatArray, Number
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays or numbers that are no such thing.
-        IoError: the library is not installed; the extra is `unwrap`.
+        IoError: the library is not installed; the extra is `simplify`.
     """
     call = Arguments("unwrap", np.float64)
     vertices = call.array("vertices", vertices, ("V", 3), min_length=1)
     high = len(vertices) - 1
     faces = call.array("faces", faces, ("F", 3), dtype=np.uint32, low=0, high=high, min_length=1)
     call.integer("size", size, low=8, high=16384)
-    library = import_extra("unwrap", "xatlas", "unwrap")
+    library = import_extra("unwrap", "xatlas", "simplify")
     # float32 of meters far from the origin would merge vertices.
     center = (vertices.max(axis=0) + vertices.min(axis=0)) / 2
     scale = max(float(np.ptp(vertices, axis=0).max()), 1e-30)
