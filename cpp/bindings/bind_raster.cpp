@@ -207,6 +207,20 @@ py::tuple nearest(const PreparedTriangles& triangles, const py::array& points, d
     return py::make_tuple(face, depth);
 }
 
+py::array count_nearer(const PreparedTriangles& triangles, const py::array& points,
+                       const py::array& depth, double near) {
+    ArrayArgs args("count");
+    const double* at = args.finite<double>("points", points, "N 2");
+    const double* farthest = args.finite<double>("depth", depth, "N");
+    py::array_t<std::int32_t> counts(args.size("N"));
+    std::int32_t* to = counts.mutable_data();
+    {
+        const py::gil_scoped_release release;
+        triangles.count({at, static_cast<std::size_t>(points.size())}, near, farthest, to);
+    }
+    return counts;
+}
+
 }  // namespace
 
 void bind_raster(py::module_& m) {
@@ -234,7 +248,9 @@ void bind_raster(py::module_& m) {
         .def(py::init(&prepared), py::arg("positions"), py::arg("faces"), py::arg("height"),
              py::arg("width"), py::arg("near"))
         .def("nearest", &nearest, py::arg("points"), py::arg("near"), py::arg("far"),
-             "Face (N,) and depth (N,) at points (x, y) of the image.");
+             "Face (N,) and depth (N,) at points (x, y) of the image.")
+        .def("count", &count_nearer, py::arg("points"), py::arg("depth"), py::arg("near"),
+             "How many faces (N,) from near to depth (N,) lie at points (x, y) of the image.");
 }
 
 }  // namespace photograd

@@ -352,6 +352,15 @@ class PreparedTriangles:
         width: typing.SupportsInt | typing.SupportsIndex,
         near: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
+    def count(
+        self,
+        points: numpy.ndarray,
+        depth: numpy.ndarray,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> numpy.ndarray:
+        """
+        How many faces (N,) from near to depth (N,) lie at points (x, y) of the image.
+        """
     def nearest(
         self,
         points: numpy.ndarray,

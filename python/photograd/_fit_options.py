@@ -54,6 +54,8 @@ class FitOptions:
         importance: samples of a ray that a nerf places by importance; 0 places all evenly.
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
+        laplacian, normal_consistency: weights of priors on the shape of a mesh; 0 switches one off.
+        opacity: whether the opacity of a mesh's texels is recovered, too.
     """
 
     representation: str = "dense_grid"
@@ -77,6 +79,9 @@ class FitOptions:
     importance: int = 0
     final_mean_rate: float = 0.01
     ssim_weight: float = 0.2
+    laplacian: float = 0.0
+    normal_consistency: float = 0.0
+    opacity: bool = False
 
     def __post_init__(self) -> None:
         """Raises DtypeError or RangeError, naming the option."""
@@ -89,6 +94,7 @@ class FitOptions:
         require_bounds(self, "importance", low=0, high=4096)
         require_bounds(self, "stop", low=0, below=1)
         require_bounds(self, "degree", low=0, high=MAX_DEGREE)
+        require_bounds(self, "laplacian", "normal_consistency", low=0)
         require_bounds(self, "ssim_weight", low=0, high=1)
         if not 0 <= self.refine_at[0] <= self.refine_at[1] < 1:
             raise RangeError(

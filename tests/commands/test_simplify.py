@@ -6,8 +6,9 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+from photograd.fields import TexturedSurface
 from photograd.geometry.icosphere import icosphere
-from photograd.transport.mesh_files import read_mesh_surface
+from photograd.transport.mesh_files import read_mesh_surface, read_textured_surface
 
 from support.missing import need_module
 from tests.commands.conftest import Photograd
@@ -33,6 +34,32 @@ def test_a_mesh_file_becomes_a_simple_one(photograd: Photograd, tmp_path: Path) 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # colors of vertices are not read
         assert read_mesh_surface(out).shape[1] == 60
+
+
+def test_a_texture_and_opacity_go_through_a_file(photograd: Photograd, tmp_path: Path) -> None:
+    need_module("fast_simplification")
+    need_module("xatlas")
+    few = ("--views", 6, "--size", 24, "--steps", 4, "--json", "--texture", 32)
+    textured, cut = tmp_path / "textured.glb", tmp_path / "cut.glb"
+    ball = write_ball(tmp_path / "ball.obj")
+    done = photograd("simplify", ball, "--triangles", 200, "--out", textured, *few)
+    assert done.code == 0, done.err
+    assert not read_again(textured).has_opacity
+    again = ("simplify", textured, "--triangles", 60, "--out", cut, "--opacity", *few)
+    done = photograd(*again)
+    assert done.code == 0, done.err
+    assert done.result()["triangles_before"] == 200
+    found = read_again(cut)
+    assert found.has_opacity
+    assert found.shape[1:] == (60, 32, 32)
+    # The texture of the first file is what the second one shows.
+    assert 0.2 < found.rgba()[..., :3].std() / read_again(textured).rgba()[..., :3].std() < 5
+
+
+def read_again(path: Path) -> TexturedSurface:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # mip maps of what shines
+        return read_textured_surface(path)
 
 
 def test_mistakes_are_named(photograd: Photograd, tmp_path: Path) -> None:

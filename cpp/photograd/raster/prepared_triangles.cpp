@@ -123,27 +123,40 @@ PreparedTriangles::PreparedTriangles(const ScreenMesh& mesh, double near, Reach 
     });
 }
 
-void PreparedTriangles::nearest(std::span<const double> points, double near, double far,
-                                std::int32_t* face, double* depth) const {
+template <class Visit>
+void PreparedTriangles::at_points(std::span<const double> points, Visit&& visit) const {
     const auto count = static_cast<std::int64_t>(points.size() / 2);
     constexpr std::int64_t piece = 256;
     parallel_for((count + piece - 1) / piece, [&](std::int64_t p) {
         for (std::int64_t i = p * piece; i < std::min(count, (p + 1) * piece); ++i) {
             const double x = points[2 * static_cast<std::size_t>(i)];
             const double y = points[2 * static_cast<std::size_t>(i) + 1];
-            face[i] = -1;
-            depth[i] = std::numeric_limits<double>::infinity();
             if (!(x >= 0 && x < width_ && y >= 0 && y < height_)) continue;
             const auto column = static_cast<std::size_t>(x) / raster_tile;
             const auto row = static_cast<std::size_t>(y) / raster_tile;
-            for (const std::uint32_t k :
-                 in_tile(row * static_cast<std::size_t>(columns_) + column)) {
-                const double z = triangles_[k].depth_at(x, y);
-                if (!(z >= near && z <= far && z < depth[i])) continue;
-                depth[i] = z;
-                face[i] = static_cast<std::int32_t>(k);
-            }
+            for (const std::uint32_t face :
+                 in_tile(row * static_cast<std::size_t>(columns_) + column))
+                visit(i, face, triangles_[face].depth_at(x, y));
         }
+    });
+}
+
+void PreparedTriangles::nearest(std::span<const double> points, double near, double far,
+                                std::int32_t* face, double* depth) const {
+    std::fill_n(face, points.size() / 2, -1);
+    std::fill_n(depth, points.size() / 2, std::numeric_limits<double>::infinity());
+    at_points(points, [&](std::int64_t i, std::uint32_t k, double z) {
+        if (!(z >= near && z <= far && z < depth[i])) return;
+        depth[i] = z;
+        face[i] = static_cast<std::int32_t>(k);
+    });
+}
+
+void PreparedTriangles::count(std::span<const double> points, double near, const double* depth,
+                              std::int32_t* counts) const {
+    std::fill_n(counts, points.size() / 2, 0);
+    at_points(points, [&](std::int64_t i, std::uint32_t, double z) {
+        counts[i] += z >= near && z <= depth[i];
     });
 }
 

@@ -69,8 +69,15 @@ public:
     /// The nearest face within [near, far] at points (x, y) of the image, or -1; and its depth.
     void nearest(std::span<const double> points, double near, double far, std::int32_t* face,
                  double* depth) const;
+    /// How many faces within [near, depth[i]] lie at point i.
+    void count(std::span<const double> points, double near, const double* depth,
+               std::int32_t* counts) const;
 
 private:
+    /// visit(i, face, z) for each face at a point, in the order of their numbers.
+    template <class Visit>
+    void at_points(std::span<const double> points, Visit&& visit) const;
+
     int width_, height_, columns_, rows_;
     std::vector<ScreenTriangle> triangles_;  // by face; an empty box where it is not drawn
     std::vector<std::uint32_t> begin_;       // by tile, one more at the end

@@ -34,8 +34,8 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
-from photograd.errors import RangeError, message
-from photograd.fields import MeshSurface, TexturedMesh, fittable
+from photograd.errors import RangeError, SceneError, message
+from photograd.fields import MeshSurface, TexturedMesh, TexturedSurface, fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.freeze import learn_freeze_refine
@@ -48,8 +48,13 @@ from photograd.fitting.options import (
     summary,
     users_of,
 )
+from photograd.representation import Fittable
 from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
-from photograd.transport.mesh_files import read_mesh_surface, read_textured_mesh
+from photograd.transport.mesh_files import (
+    read_mesh_surface,
+    read_textured_mesh,
+    read_textured_surface,
+)
 
 
 def _defaults(option: str) -> str:
@@ -139,6 +144,25 @@ ImportanceOption: TypeAlias = Annotated[
         help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
     ),
 ]
+LaplacianOption: TypeAlias = Annotated[
+    float,
+    typer.Option(
+        "--laplacian",
+        min=0.0,
+        help=f"Weight that keeps the vertices of {_users('laplacian')} near their neighbors' mean.",
+    ),
+]
+NormalConsistencyOption: TypeAlias = Annotated[
+    float,
+    typer.Option(
+        "--normal-consistency",
+        min=0.0,
+        help=f"Weight that keeps normals of neighboring faces of {_users('laplacian')} alike.",
+    ),
+]
+OpacityOption: TypeAlias = Annotated[
+    bool, typer.Option("--opacity", help=f"Recover the opacity of a {_users('opacity')}, too.")
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
@@ -146,7 +170,7 @@ StartFromOption: TypeAlias = Annotated[
         help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
         "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
         "whose Gaussians gaussian_codes take; "
-        "or, for a textured_mesh or a mesh, a mesh "
+        "or, for a textured_mesh, a textured_surface or a mesh, a mesh "
         "file with texture coordinates: "
         f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
@@ -212,6 +236,9 @@ def fit(
     density_control: DensityControlOption = DEFAULTS.density_control,
     decode: DecodeOption = DEFAULTS.decode,
     importance: ImportanceOption = DEFAULTS.importance,
+    laplacian: LaplacianOption = DEFAULTS.laplacian,
+    normal_consistency: NormalConsistencyOption = DEFAULTS.normal_consistency,
+    opacity: OpacityOption = DEFAULTS.opacity,
     start_from: StartFromOption = None,
     freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
@@ -230,7 +257,8 @@ def fit(
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
-    comment. A fit of a textured_mesh, whose vertices are held, or of a mesh leaves OUT/mesh.glb.
+    comment. A fit of a textured_mesh, whose vertices are held, of a mesh or of a textured_surface
+    leaves OUT/mesh.glb.
 
     A warning says if all cameras look from nearly one direction, or stand at nearly one place: if
     their longest baseline is below a tenth of their distance from the scene, depth is uncertain.
@@ -261,7 +289,8 @@ def fit(
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
-        chosen |= {"importance": importance}
+        chosen |= {"importance": importance, "opacity": opacity}
+        chosen |= {"laplacian": laplacian, "normal_consistency": normal_consistency}
         options = options_for(representation, **chosen)
         first = first_model(start_from, representation) if start_from else None
         job = _start(loaded, options, first, allow_blind=allow_blind)
@@ -308,11 +337,28 @@ def first_model(path: Path, representation: str = TexturedMesh.name) -> Model:
         return load_model(path)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        read = read_mesh_surface if representation == MeshSurface.name else read_textured_mesh
-        field = read(path)
+        field = _MESH_READERS.get(representation, read_textured_mesh)(path)
     for warning in caught:
         note(f"{warning.message}")
     return Model.of(field)
+
+
+def _textured_or_plain(path: Path) -> Fittable:
+    """A mesh with its texture; without one, a mesh with texture coordinates; or without these."""
+    try:
+        return read_textured_surface(path)
+    except (SceneError, RangeError):
+        pass
+    try:
+        return read_textured_mesh(path)
+    except (SceneError, RangeError):
+        return read_mesh_surface(path)
+
+
+_MESH_READERS: dict[str, Callable[[Path], Fittable]] = {
+    MeshSurface.name: read_mesh_surface,
+    TexturedSurface.name: _textured_or_plain,
+}
 
 
 def exported(job: Fit, out: Path) -> dict[str, str]:

@@ -12,11 +12,12 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 from photograd_course.cli import note as say
 
 from photograd.commands.shared import out_option, stop_on_signals, use_threads
-from photograd.errors import RangeError, message
+from photograd.errors import RangeError, SceneError, message
 from photograd.fields.lit_surface import lit
 from photograd.fields.mesh_surface import MeshSurface
+from photograd.fields.surface import Surface
 from photograd.fitting.simplify import SimplifyOptions, simplify
-from photograd.transport.mesh_files import SUFFIXES, read_mesh_surface
+from photograd.transport.mesh_files import SUFFIXES, read_mesh_surface, read_textured_surface
 
 DEFAULTS = SimplifyOptions(4)
 MeshArgument = Annotated[
@@ -26,7 +27,7 @@ TrianglesOption = Annotated[
     int, typer.Option("--triangles", min=4, help="Most triangles that are left.")
 ]
 OutOption = Annotated[
-    Path, out_option("The simple mesh: .glb with colors of its vertices, or .npz with all arrays.")
+    Path, out_option("The simple mesh: .glb with its colors or texture, or .npz with all arrays.")
 ]
 ViewsOption = Annotated[
     int, typer.Option("--views", min=2, help="Cameras around the mesh that it is drawn from.")
@@ -34,6 +35,15 @@ ViewsOption = Annotated[
 SizeOption = Annotated[int, typer.Option("--size", min=16, help="Pixels along an edge of a view.")]
 StepsOption = Annotated[
     int, typer.Option("--steps", min=0, help="Of gradient descent; 0 leaves the decimation.")
+]
+TextureOption = Annotated[
+    int,
+    typer.Option(
+        "--texture", min=0, help="Texels along an edge of its texture; 0: colors of vertices."
+    ),
+]
+OpacityOption = Annotated[
+    bool, typer.Option("--opacity", help="Texels have an opacity, too; needs --texture.")
 ]
 
 
@@ -49,6 +59,8 @@ def simplify_mesh(
     views: ViewsOption = DEFAULTS.views,
     size: SizeOption = DEFAULTS.size,
     steps: StepsOption = DEFAULTS.steps,
+    texture: TextureOption = DEFAULTS.texture,
+    opacity: OpacityOption = DEFAULTS.opacity,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -56,12 +68,14 @@ def simplify_mesh(
 ) -> None:
     """Make a mesh of few triangles look like the mesh it comes from.
 
-    The mesh is drawn in gray under a light from above. A decimation of it is the start; its
-    vertices and their colors then follow the derivative of the pictures, silhouettes included
-    (Hasselgren and others, 2021). The colors that are written contain the light. The report
-    compares decimation and result with the mesh, from views that the descent has not seen.
+    A mesh of one shape with a texture shows that; any other is drawn in gray under a light from
+    above, and the colors that are written contain the light. A decimation of the mesh is the start;
+    its vertices and colors, or texels, then follow the derivative of the pictures, silhouettes
+    included (Hasselgren and others, 2021). The report compares decimation and result with the mesh,
+    from views that the descent has not seen.
 
-    Needs fast_simplification: pip install 'photograd[simplify]'. Ctrl-C writes what there is.
+    Needs fast_simplification, and xatlas for --texture: pip install 'photograd[simplify]'. Ctrl-C
+    writes what there is.
 
     Example: photograd simplify bunny.obj --triangles 1000 --out bunny_1000.glb
     """
@@ -69,12 +83,10 @@ def simplify_mesh(
     if out.suffix.lower() not in MeshSurface.export_suffixes:
         expected = f"a file name that ends in {' or '.join(MeshSurface.export_suffixes)}"
         raise RangeError(message("simplify", "--out", expected, f"{out.name}"))
-    options = SimplifyOptions(triangles, views=views, size=size, steps=steps, seed=seed)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        dense = lit(read_mesh_surface(mesh))
-    for warning in caught:
-        say(f"{warning.message}")
+    options = SimplifyOptions(
+        triangles, views=views, size=size, steps=steps, texture=texture, opacity=opacity, seed=seed
+    )
+    dense = dense_mesh(mesh)
     began = time.monotonic()
     with stop_on_signals() as stopping:
         found = simplify(dense, options, bar=True, should_stop=stopping)
@@ -95,3 +107,24 @@ def simplify_mesh(
     if not found.finished:
         say(f"stopped at step {len(found.history)} of {steps}")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def dense_mesh(path: Path) -> Surface:
+    """A mesh file with its texture, or gray under a light; what is left out is said on stderr.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        IoError, RangeError, SceneError: as `read_mesh_surface`.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            found: Surface = read_textured_surface(path)
+        except (SceneError, RangeError):
+            caught.clear()
+            found = lit(read_mesh_surface(path))
+    for warning in caught:
+        say(f"{warning.message}")
+    return found

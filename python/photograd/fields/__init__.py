@@ -22,6 +22,7 @@ from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
 from photograd.fields.textured_mesh import TexturedMesh
+from photograd.fields.textured_surface import TexturedSurface
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
 from photograd.representation import REGISTERED, Fittable, Representation, fittable
@@ -48,6 +49,7 @@ __all__ = [
     "SunlitMedium",
     "Texture2D",
     "TexturedMesh",
+    "TexturedSurface",
     "TinyNetwork",
     "ToyBlobs",
     "fittable",

@@ -12,32 +12,34 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
-import numpy.typing as npt
-from photograd_course.atomic_io import atomic_write
 from photograd_course.color import srgb_decode
 from photograd_course.portable_math import sigmoid
 from photograd_course.random import normal_vectors, uniform
 
 from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
-from photograd._checks import from_plain, require_bounds
+from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
-from photograd._gltf_bytes import GltfBytes
 from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
-from photograd.errors import RangeError, SceneError, message
+from photograd.errors import RangeError, message
+from photograd.fields.surface import (
+    Surface,
+    SurfacePolicy,
+    manifold_edges,
+    require_area,
+    without_seams,
+)
+from photograd.fields.surface_files import UNLIT, write_glowing_mesh
 from photograd.fields.surface_picture import SurfacePicture
-from photograd.fields.textured_mesh import UNLIT, TexturedMesh
+from photograd.fields.textured_mesh import TexturedMesh
 from photograd.geometry.icosphere import icosphere
 from photograd.geometry.large_steps import LargeSteps
-from photograd.geometry.mesh import Mesh
-from photograd.raster import MeshEdges
 from photograd.representation import (
     COPIES,
-    Fittable,
     ImageBatch,
     Memory,
     Outputs,
@@ -47,27 +49,6 @@ from photograd.representation import (
     register,
 )
 from photograd.types import Array, FloatArray
-
-VERTEX_RATE = 0.02
-"""Adam's rate of u, in extents of the mesh."""
-
-
-@dataclass(frozen=True)
-class SurfacePolicy:
-    """How the vertices of a mesh are parameterized.
-
-    smoothness: lambda of `LargeSteps`; 0 moves each vertex by itself.
-    extent: size of the scene in meters; the learning rate of the vertices is in units of it.
-
-    Raises:
-        RangeError: a negative smoothness or extent, or one that is not finite.
-    """
-
-    smoothness: float = 10.0
-    extent: float = 1.0
-
-    def __post_init__(self) -> None:
-        require_bounds(self, "smoothness", "extent", low=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +60,7 @@ class SurfaceContext:
 
 
 @register
-class MeshSurface(Fittable):
+class MeshSurface(Surface):
     """params["differential"] (V, 3) meters: u = (I + lambda L) x of the vertices x.
     params["color_logits"] (V, 3): the display color of a vertex is sigmoid of it.
 
@@ -92,18 +73,8 @@ class MeshSurface(Fittable):
     """
 
     name: ClassVar[str] = "mesh"
-    capabilities: ClassVar[frozenset[str]] = frozenset({"image"})
-    color_space: ClassVar[str] = "display"
-    first_model: ClassVar[Literal["refused", "optional", "required"]] = "optional"
-    first_model_kinds: ClassVar[tuple[str, ...]] = ("mesh", "textured_mesh")
-    same_resolution: ClassVar[bool] = False
-    first_model_help: ClassVar[str] = "or without one, from a sphere"
-    row_updates: ClassVar[bool] = False
-    gradient_picture: ClassVar[str] = "surface"
     counts: ClassVar[str] = "sphere"
     fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 16, "steps": 1000}
-    export_suffixes: ClassVar[tuple[str, ...]] = (".glb", ".npz")
-    exported_as: ClassVar[str] = "mesh.glb"
 
     def __init__(
         self,
@@ -133,10 +104,7 @@ class MeshSurface(Fittable):
             "faces", faces, ("F", 3), dtype=np.uint32, low=0, high=count - 1, min_length=1
         )
         self.params = {"differential": differential, "color_logits": logits}
-        self.faces: npt.NDArray[np.uint32] = faces
-        self.policy = policy or SurfacePolicy()
-        self.edges = _manifold_edges(faces)
-        self._steps = LargeSteps(self.edges.ends, count, self.policy.smoothness)
+        self._hold(count, faces, policy or SurfacePolicy())
 
     @classmethod
     def of_mesh(
@@ -147,6 +115,7 @@ class MeshSurface(Fittable):
         *,
         smoothness: float = 10.0,
         dtype: type[np.floating[Any]] = np.float32,
+        options: FitOptions | None = None,
     ) -> Self:
         """The parameters of a mesh, by default middle gray.
 
@@ -156,6 +125,7 @@ class MeshSurface(Fittable):
             color_logits: (V, 3), or None for zeros.
             smoothness: lambda of `LargeSteps`.
             dtype: of the parameters.
+            options: of a fit, with the weights of the priors; None for none.
 
         Raises:
             DtypeError, ShapeError, RangeError: as for the class.
@@ -165,14 +135,9 @@ class MeshSurface(Fittable):
         vertices = call.array("vertices", vertices, ("V", 3), min_length=1)
         high = len(vertices) - 1
         faces = call.array("faces", faces, ("F", 3), dtype=np.uint32, low=0, high=high)
-        a, b, c = (vertices[faces[:, k]] for k in range(3))
-        flat = np.flatnonzero(~np.cross(b - a, c - a).any(axis=1))
-        if len(flat):
-            got = f"{len(flat)} without, the first face {flat[0]}"
-            raise SceneError(message("MeshSurface.of_mesh", "faces", "triangles with area", got))
-        extent = float(np.sqrt(np.square(np.ptp(vertices, axis=0)).sum()))
-        policy = SurfacePolicy(smoothness, extent)
-        steps = LargeSteps(_manifold_edges(faces).ends, len(vertices), smoothness)
+        require_area("MeshSurface.of_mesh", vertices, faces)
+        policy = SurfacePolicy.of(vertices, smoothness, options)
+        steps = LargeSteps(manifold_edges(faces).ends, len(vertices), smoothness)
         logits = np.zeros_like(vertices) if color_logits is None else np.asarray(color_logits)
         return cls(steps.times(vertices).astype(dtype), logits.astype(dtype), faces, policy)
 
@@ -195,26 +160,24 @@ class MeshSurface(Fittable):
         pose = invert_rigid(low.world_from_camera)[:3]
         return ImageBatch(low, np.ascontiguousarray(pose))
 
-    @property
-    def vertices(self) -> FloatArray:
-        """(V, 3) float64 in the world, meters."""
-        return self._steps.solve(self.params["differential"].astype(np.float64))
-
-    @property
-    def mesh(self) -> Mesh:
-        """Vertices and faces, for tracing rays."""
-        return Mesh(self.vertices, self.faces)
-
     def colors(self) -> FloatArray:
         """(V, 3) float64 display colors of the vertices, in (0, 1)."""
         found: FloatArray = sigmoid(self.params["color_logits"].astype(np.float64))
         return found
 
-    @property
-    def box(self) -> Array:
-        """(2, 3) corners of the mesh in world meters."""
-        vertices = self.vertices
-        return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+    def colors_at(self, face: Array, weights: FloatArray) -> FloatArray:
+        """(N, 4) straight display color and opacity at points of faces."""
+        found = np.einsum("nk,nkc->nc", weights, self.colors()[self.faces[face]])
+        return np.concatenate([found, np.ones((len(found), 1))], axis=1)
+
+    def color_logits(self) -> Array:
+        """(V, 3) raw display colors of the vertices."""
+        return self.params["color_logits"]
+
+    def unsmoothed(self) -> Self:
+        """The same mesh with smoothness 0."""
+        logits = self.params["color_logits"]
+        return type(self).of_mesh(self.vertices, self.faces, logits, smoothness=0.0)
 
     @property
     def resolution(self) -> int:
@@ -229,12 +192,9 @@ class MeshSurface(Fittable):
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Both have a row a vertex."""
-        shape = self.params["differential"].shape
-        extent = self.policy.extent
-        far = 1e3 * max(extent, 1.0) * (1 + self.policy.smoothness)
-        rate = max(VERTEX_RATE * extent, 1e-12)
+        shape = self.params["color_logits"].shape
         return {
-            "differential": ParamSpec(shape, "m", (-far, far), rate, "world"),
+            "differential": self.vertex_spec(),
             "color_logits": ParamSpec(shape, "1", (-20.0, 20.0), 0.05, "none"),
         }
 
@@ -279,14 +239,15 @@ class MeshSurface(Fittable):
             low, high = start.bounds.box
             sphere = icosphere(start.options.resolution)
             vertices = (low + high) / 2 + (high - low) / 2 * sphere.vertices.astype(np.float64)
-            field = cls.of_mesh(vertices, sphere.faces)
-        elif isinstance(first, MeshSurface):
-            logits = first.params["color_logits"]
+            field = cls.of_mesh(vertices, sphere.faces, options=start.options)
+        elif isinstance(first, Surface):
+            logits = first.color_logits()
+            smoothness = first.policy.smoothness
             field = cls.of_mesh(
-                first.vertices, first.faces, logits, smoothness=first.policy.smoothness
+                first.vertices, first.faces, logits, smoothness=smoothness, options=start.options
             )
         elif isinstance(first, TexturedMesh):
-            field = cls.of_mesh(*without_seams(first.mesh))
+            field = cls.of_mesh(*without_seams(first.mesh), options=start.options)
         else:
             expected = f"a model of {' or '.join(cls.first_model_kinds)}"
             raise RangeError(
@@ -350,48 +311,6 @@ class MeshSurface(Fittable):
         """Write a .glb file with the colors of the vertices, or all arrays to an .npz file."""
         if path.suffix.lower() != ".glb":
             return super().export(path, background)
-        file, arrays = GltfBytes(), self.stored()
-        material = {
-            "name": "radiance",
-            "pbrMetallicRoughness": {"metallicFactor": 0.0},
-            "doubleSided": True,
-            "extensions": {UNLIT: {}},
-        }
-        part = {
-            "attributes": {
-                "POSITION": file.attribute(arrays["vertices"], bounds=True),
-                "COLOR_0": file.attribute(arrays["colors"]),
-            },
-            "indices": file.indices(self.faces),
-            "material": file.entry("materials", material),
-        }
-        node = {"mesh": file.entry("meshes", {"name": "mesh", "primitives": [part]})}
-        file.root |= {"nodes": [node], "scenes": [{"nodes": [0]}], "scene": 0}
-        file.root["extensionsUsed"] = [UNLIT]
-        atomic_write(path, file.glb())
+        arrays = self.stored()
+        write_glowing_mesh(path, arrays["vertices"], self.faces, colors=arrays["colors"])
         return (f"its vertex colors are radiance: {UNLIT} shows them without lights",)
-
-
-def _manifold_edges(faces: Array) -> MeshEdges:
-    """The edges of faces (F, 3).
-
-    Raises SceneError where a face has one vertex twice, or an edge three faces or more.
-    """
-    a, b, c = faces.T
-    twice = np.flatnonzero((a == b) | (b == c) | (c == a))
-    if len(twice):
-        got = f"{len(twice)} with one vertex twice, the first face {twice[0]}"
-        raise SceneError(message("MeshSurface", "faces", "triangles of three vertices", got))
-    edges = MeshEdges.of(faces)
-    if edges.crowded:
-        first = edges.ends[edges.inner < 0][0].tolist()
-        got = f"{edges.crowded} with more, the first between vertices {first[0]} and {first[1]}"
-        remedy = "repair the mesh: it is not manifold"
-        raise SceneError(message("MeshSurface", "faces", "edges of one or two faces", got, remedy))
-    return edges
-
-
-def without_seams(mesh: Mesh) -> tuple[Array, Array]:
-    """Vertices (V, 3) and faces (F, 3) of `mesh`, the vertices at one position merged into one."""
-    vertices, which = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
-    return vertices, which.reshape(-1)[mesh.faces]

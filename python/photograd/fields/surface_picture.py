@@ -118,20 +118,14 @@ class SurfacePicture:
         return cls(image, vertices, colors, faces, edges, *drawn)
 
     def cotangent(self, d_outputs: Outputs) -> FloatArray:
-        """dL/d `image`.
-
-        Args:
-            d_outputs: dL/d color (P, 3), opacity (P,) and depth (P,) of the pixels; None for zero.
-        """
+        """dL/d `image`, as `picture_cotangent` has it."""
         height, width = self.image.shape[:2]
-        given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
-        parts = [
-            np.zeros((height, width, channels))
-            if d is None
-            else np.asarray(d, np.float64).reshape(height, width, channels)
-            for d, channels in given
-        ]
-        return np.concatenate(parts, axis=-1)
+        return picture_cotangent(d_outputs, height, width)
+
+    @property
+    def shown(self) -> Array:
+        """Numbers of the faces that pixels show."""
+        return np.unique(self.visibility.face[self.visibility.covered])
 
     def position_gradients(self, d_image: FloatArray) -> PositionGradients:
         """The parts of the adjoint.
@@ -163,3 +157,20 @@ class SurfacePicture:
         d_turn = np.einsum("vi,vj->ij", d_local, self.vertices)
         d_pose = np.concatenate([d_turn, d_local.sum(axis=0)[:, None]], axis=1)
         return SurfaceGradients(matmul(d_local, self.pose[:, :3]), parts.colors, d_pose)
+
+
+def picture_cotangent(d_outputs: Outputs, height: int, width: int) -> FloatArray:
+    """(H, W, 5) dL/d color, opacity and depth.
+
+    Args:
+        d_outputs: dL/d color (P, 3), opacity (P,) and depth (P,) of the pixels; None for zero.
+        height, width: of the picture, in pixels.
+    """
+    given = ((d_outputs.color, 3), (d_outputs.opacity, 1), (d_outputs.depth, 1))
+    parts = [
+        np.zeros((height, width, channels))
+        if d is None
+        else np.asarray(d, np.float64).reshape(height, width, channels)
+        for d, channels in given
+    ]
+    return np.concatenate(parts, axis=-1)

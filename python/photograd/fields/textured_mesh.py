@@ -18,7 +18,6 @@ from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.atomic_io import atomic_write
 from photograd_course.color import srgb_encode
 from photograd_course.portable_math import log, sigmoid
 from photograd_course.random import uniform
@@ -27,9 +26,9 @@ from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain, require_bounds
 from photograd._fit_options import FitOptions
-from photograd._gltf_bytes import GltfBytes
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import START_COLOR
+from photograd.fields.surface_files import UNLIT, write_glowing_mesh
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import (
     COPIES,
@@ -52,9 +51,6 @@ from photograd.textures import (
 from photograd.types import Array
 
 LN_2 = 0.6931471805599453
-UNLIT = "KHR_materials_unlit"
-SAMPLER = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}
-"""Of a glTF file: linear, between levels of the mip map as well, clamped at the edges."""
 
 
 @dataclass(frozen=True)
@@ -306,31 +302,9 @@ class TexturedMesh(Fittable):
         if path.suffix.lower() != ".glb":
             return super().export(path, background)
         assert self.mesh.uv is not None
-        file = GltfBytes()
         pixels = np.rint(255 * np.clip(srgb_encode(self.colors()), 0, 1)).astype(np.uint8)
-        texture = {
-            "source": file.image("radiance", pixels),
-            "sampler": file.entry("samplers", SAMPLER),
-        }
-        color = {"baseColorTexture": {"index": file.entry("textures", texture)}}
-        material = {
-            "name": "radiance",
-            "pbrMetallicRoughness": {**color, "metallicFactor": 0.0},
-            "doubleSided": True,
-            "extensions": {UNLIT: {}},
-        }
-        part = {
-            "attributes": {
-                "POSITION": file.attribute(self.mesh.vertices, bounds=True),
-                "TEXCOORD_0": file.attribute(self.mesh.uv),
-            },
-            "indices": file.indices(self.mesh.faces),
-            "material": file.entry("materials", material),
-        }
-        node = {"mesh": file.entry("meshes", {"name": "mesh", "primitives": [part]})}
-        file.root |= {"nodes": [node], "scenes": [{"nodes": [0]}], "scene": 0}
-        file.root["extensionsUsed"] = [UNLIT]
-        atomic_write(path, file.glb())
+        mesh = self.mesh
+        write_glowing_mesh(path, mesh.vertices, mesh.faces, uv=mesh.uv, pixels=pixels)
         return (f"its texture is radiance: {UNLIT} shows it without lights",)
 
 

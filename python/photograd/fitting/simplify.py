@@ -1,8 +1,8 @@
 """A mesh of few triangles that looks like a mesh of many [Hasselgren2021].
 
 The dense mesh is drawn from cameras all around it. The simple one starts from a decimation by
-quadric errors, with colors of the nearest vertices, and its faces stay. Its vertices, colors and,
-where it has them, opacities descend on
+quadric errors, with the colors of the dense one at its vertices or in a texture, and its faces
+stay. Its vertices, colors and, where it has them, opacities (alpha mattes) descend on
 
     loss = picture_loss(image, reference) + w mean (opacity - reference opacity)^2
 
@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from photograd_course.cli import Column
@@ -27,20 +28,30 @@ from photograd._checks import require_bounds, require_instance, require_types
 from photograd._descend import descend, progress_bar
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import spiral_cameras
-from photograd.errors import Error, message
+from photograd.errors import Error, RangeError, message
+from photograd.fields.bake import baked
+from photograd.fields.layered_picture import Unwrapped
 from photograd.fields.mesh_surface import MeshSurface
+from photograd.fields.surface import Surface
+from photograd.fields.surface_texels import raw_texels
+from photograd.fields.textured_surface import TexturedSurface
 from photograd.fitting.data import TrainingView
 from photograd.fitting.drawing import render_field
 from photograd.fitting.loss import decibels, picture_loss, picture_loss_backward
 from photograd.fitting.steps import Background, display_background
 from photograd.geometry.decimation import decimate
+from photograd.geometry.unwrap import unwrap
 from photograd.representation import ImageBatch, Outputs, RenderOptions
 from photograd.types import Array, FloatArray
 
-VERTEX_STEP = 0.005
-"""Rate of the vertices at the first step, in mean lengths of an edge."""
+VERTEX_STEP, TEXTURED_VERTEX_STEP = 0.005, 0.015
+"""Rate of the vertices at the first step, in mean lengths of an edge; a texture bears longer ones,
+since its colors do not depend on where few vertices lie."""
 LAST_RATE = 0.1
 """Part of all rates that is left at the last step."""
+SMALLEST_TEXTURE = 8
+START_OPACITY = 0.99
+"""Of texels: nearly all of what a decimation shows."""
 HELD_OUT = 12
 """Views that measure, and that no step sees."""
 WHITE = np.ones(3)
@@ -56,6 +67,9 @@ class SimplifyOptions:
         views: of the dense mesh, one of them at a step.
         size: of a view in pixels along each edge.
         steps: of the descent; 0 leaves the decimation.
+        texture: texels along an edge of the texture that the simple mesh gets; 0 gives it colors at
+            its vertices.
+        opacity: whether the texels have an opacity, which cuts outlines out of few triangles.
         silhouette_weight: w above.
         ssim_weight: share of 1 - SSIM in the loss of a picture.
         seed: of the order of the views and of the backgrounds.
@@ -65,6 +79,8 @@ class SimplifyOptions:
     views: int = 48
     size: int = 128
     steps: int = 600
+    texture: int = 0
+    opacity: bool = False
     silhouette_weight: float = 2.0
     ssim_weight: float = 0.2
     seed: int = 0
@@ -76,6 +92,13 @@ class SimplifyOptions:
         require_bounds(self, "views", low=2, high=100_000)
         require_bounds(self, "size", low=16, high=8192)
         require_bounds(self, "steps", "seed", low=0, high=2**31 - 1)
+        require_bounds(self, "texture", low=0, high=16384)
+        if self.texture and self.texture < SMALLEST_TEXTURE:
+            expected = f"0 or at least {SMALLEST_TEXTURE}"
+            raise RangeError(message("SimplifyOptions", "texture", expected, self.texture))
+        if self.opacity and not self.texture:
+            expected, remedy = "a texture, which holds it", "give texture, such as 256"
+            raise RangeError(message("SimplifyOptions", "opacity", expected, "none", remedy))
         require_bounds(self, "silhouette_weight", low=0)
         require_bounds(self, "ssim_weight", low=0, high=1)
 
@@ -106,8 +129,8 @@ class SimplifiedMesh:
         finished: whether all steps were done.
     """
 
-    surface: MeshSurface
-    start: MeshSurface
+    surface: Surface
+    start: Surface
     before: Likeness
     after: Likeness
     history: FloatArray
@@ -122,7 +145,7 @@ class Progress(descent.Progress):
 
 
 def simplify(
-    dense: MeshSurface,
+    dense: Surface,
     options: SimplifyOptions,
     *,
     bar: bool = False,
@@ -131,7 +154,7 @@ def simplify(
     """A mesh of `options.triangles` triangles whose pictures are those of `dense`.
 
     Args:
-        dense: with its colors; `lit` gives a mesh without any those of a shaded one.
+        dense: with its colors or texture; `lit` gives a mesh without any those of a shaded one.
         options: number of triangles, views and steps.
         bar: show progress on stderr.
         should_stop: asked before each step.
@@ -140,15 +163,13 @@ def simplify(
         DtypeError: other types.
         RangeError: no fewer triangles than `dense` has.
         SceneError: a decimation that is not manifold.
-        IoError: the library of `decimate` is not installed.
+        IoError: the library of `decimate` or `unwrap` is not installed.
         Error: a loss that is not finite.
     """
-    require_instance("simplify", "dense", dense, MeshSurface, "MeshSurface.of_mesh makes one")
+    require_instance("simplify", "dense", dense, Surface, "MeshSurface.of_mesh makes one")
     require_instance("simplify", "options", options, SimplifyOptions)
-    dense = MeshSurface.of_mesh(  # without a system to be solved for each view
-        dense.vertices, dense.faces, dense.params["color_logits"], smoothness=0.0
-    )
-    start = decimated(dense, options.triangles)
+    dense = dense.unsmoothed()
+    start = decimated(dense, options.triangles, texture=options.texture, opacity=options.opacity)
     job = Simplification(dense, start, options)
     columns = (descent.LOSS_COLUMN, PSNR_COLUMN)
     with progress_bar("simplify", job, columns, shown=bar) as on_step:
@@ -166,20 +187,29 @@ def simplify(
     return SimplifiedMesh(job.surface, start, before, after, history, run.finished)
 
 
-def decimated(dense: MeshSurface, triangles: int) -> MeshSurface:
-    """A decimation by quadric errors, each vertex with the color of the nearest of `dense`.
+def decimated(
+    dense: Surface, triangles: int, *, texture: int = 0, opacity: bool = False
+) -> Surface:
+    """A decimation by quadric errors that shows what `dense` shows nearby.
 
     Args:
         dense: the mesh.
         triangles: at most so many.
+        texture: texels along an edge of its texture; 0 for colors at its vertices.
+        opacity: whether texels have an opacity.
 
     Raises:
         RangeError, SceneError, IoError: as for `simplify`.
     """
     vertices, faces = decimate(dense.vertices, dense.faces, triangles)
+    if texture:
+        unwrapped = Unwrapped(*unwrap(vertices, faces, texture))
+        texels = raw_texels(
+            baked(vertices, unwrapped, texture, dense), START_OPACITY if opacity else None
+        )
+        return TexturedSurface.of_mesh(vertices, unwrapped, texels, smoothness=0.0)
     nearest = _nearest_vertices(vertices, dense.vertices)
-    logits = dense.params["color_logits"][nearest]
-    return MeshSurface.of_mesh(vertices, faces, logits, smoothness=0.0)
+    return MeshSurface.of_mesh(vertices, faces, dense.color_logits()[nearest], smoothness=0.0)
 
 
 def _nearest_vertices(points: FloatArray, vertices: FloatArray) -> Array:
@@ -198,7 +228,7 @@ class Simplification:
         history: (step, loss, PSNR of its view in dB) of each.
     """
 
-    def __init__(self, dense: MeshSurface, start: MeshSurface, options: SimplifyOptions) -> None:
+    def __init__(self, dense: Surface, start: Surface, options: SimplifyOptions) -> None:
         """Draw the references.
 
         Args:
@@ -214,7 +244,8 @@ class Simplification:
         self._views = _views(dense, spiral_cameras(dense.box, options.views, size=options.size))
         self._optimizer = Adam()
         a, b = (start.vertices[start.edges.ends[:, k]] for k in range(2))
-        self._vertex_rate = VERTEX_STEP * float(np.sqrt(np.square(b - a).sum(axis=1)).mean())
+        step = TEXTURED_VERTEX_STEP if isinstance(start, TexturedSurface) else VERTEX_STEP
+        self._vertex_rate = step * float(np.sqrt(np.square(b - a).sum(axis=1)).mean())
 
     @property
     def steps(self) -> int:
@@ -263,7 +294,8 @@ class Simplification:
         weight = options.silhouette_weight
         loss = picture.value + weight * float(np.square(gap).mean(dtype=np.float64))
         d_opacity = d_outputs.opacity + gap * gap.dtype.type(2 * weight / gap.size)
-        gradients = self.surface.render_backward(context, Outputs(d_outputs.color, d_opacity))
+        d_view = Outputs(d_outputs.color, d_opacity)
+        gradients: dict[str, Any] = dict(self.surface.render_backward(context, d_view))
         return loss, picture.mean_square, gradients
 
     def _rates(self) -> dict[str, float]:
@@ -273,7 +305,7 @@ class Simplification:
         return rates | {"differential": fall * self._vertex_rate}
 
 
-def _views(surface: MeshSurface, cameras: Sequence[Camera]) -> list[TrainingView]:
+def _views(surface: Surface, cameras: Sequence[Camera]) -> list[TrainingView]:
     """What cameras see of a surface."""
     views = []
     for camera in cameras:
@@ -283,7 +315,7 @@ def _views(surface: MeshSurface, cameras: Sequence[Camera]) -> list[TrainingView
     return views
 
 
-def likeness(surface: MeshSurface, views: Sequence[TrainingView]) -> Likeness:
+def likeness(surface: Surface, views: Sequence[TrainingView]) -> Likeness:
     """How like `views` of a mesh another one looks.
 
     Args:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from photograd_course.viz import style
 
 from photograd._notebook import EDGE, png_of_sheet, sheet
-from photograd.fields.mesh_surface import MeshSurface
+from photograd.fields.surface import Surface
 from photograd.fitting.data import TrainingView
 from photograd.fitting.gradient_drawings import draw_picture
 from photograd.fitting.loss import picture_loss, picture_loss_backward
@@ -28,7 +28,7 @@ CAPTION = (
     "Left: the view. Arrows: where lower loss would take each visible vertex on the screen; blue "
     "outward, orange inward. Middle: what comes through "
     "silhouettes, which antialiasing makes differentiable. Right: what comes from colors inside of "
-    "faces, its arrows {factor} longer."
+    "faces, of vertices or a texture; its arrows are {factor} longer."
 )
 
 
@@ -60,7 +60,7 @@ class SurfaceGradients:
 
 
 def surface_gradients(
-    field: MeshSurface, view: TrainingView, *, ssim_weight: float = 0.2
+    field: Surface, view: TrainingView, *, ssim_weight: float = 0.2
 ) -> SurfaceGradients:
     """The gradient of the loss of one view, over white.
 
@@ -77,8 +77,7 @@ def surface_gradients(
     parts = drawn.position_gradients(drawn.cotangent(picture_loss_backward(loss)[0]))
     depth = drawn.positions[:, 2:]
     visible = np.zeros(len(depth), bool)
-    shown = drawn.visibility.face[drawn.visibility.covered]
-    visible[field.faces[np.unique(shown)].reshape(-1)] = True
+    visible[field.faces[drawn.shown].reshape(-1)] = True
     visible |= parts.silhouettes.any(axis=1)  # of faces smaller than pixels
     return SurfaceGradients(
         loss.image,

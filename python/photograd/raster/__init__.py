@@ -14,7 +14,13 @@ float64 and give the same bits on any number of threads.
 
 from __future__ import annotations
 
-from photograd.raster.antialiasing import Crossings, antialias, antialias_backward, find_crossings
+from photograd.raster.antialiasing import (
+    Crossings,
+    antialias,
+    antialias_backward,
+    find_crossings,
+    layered_crossings,
+)
 from photograd.raster.attributes import interpolate, interpolate_backward
 from photograd.raster.coverage import polygon_coverage, polygon_coverage_backward
 from photograd.raster.edge_sampling import (
@@ -49,6 +55,7 @@ __all__ = [
     "footprints_backward",
     "interpolate",
     "interpolate_backward",
+    "layered_crossings",
     "polygon_coverage",
     "polygon_coverage_backward",
     "project",

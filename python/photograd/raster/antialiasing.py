@@ -22,10 +22,15 @@ looked up at each crossing, so that a mesh with faces smaller than pixels loses 
 silhouette. Where two faces intersect there is no edge, and no derivative. Blend colors, after
 shading and last of all: attributes that are blended before shading, or a mask after it, are wrong
 at silhouettes.
+
+Of transparent faces each layer of a depth peeling is blended by itself. With S_k the layer k over
+what the layers behind it leave, C_k = antialias(S_k, crossings k); the silhouettes of layer k are
+those that k faces hide.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,14 +86,36 @@ def find_crossings(
         DtypeError, ShapeError, RangeError: arrays of other types or shapes, or that do not belong
             together.
     """
+    return layered_crossings(positions, faces, [visibility], edges, near=near)[0]
+
+
+def layered_crossings(
+    positions: FloatArray,
+    faces: Array,
+    layers: Sequence[Visibility],
+    edges: MeshEdges,
+    *,
+    near: float = 1e-3,
+) -> list[Crossings]:
+    """What `antialias` blends in each layer.
+
+    Args:
+        positions, faces, edges, near: as for `find_crossings`.
+        layers: at least one, from the nearest on: each by `rasterize` with the depth of the one
+            before it as `behind`.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as for `find_crossings`.
+    """
     call = Arguments("find_crossings", np.float64)
     positions = call.array("positions", positions, ("V", 3))
     call.number("near", near, above=0)
-    height, width = visibility.face.shape
+    height, width = layers[0].face.shape
     segments = Segments.of(positions, edges, (height, width), near)
     lookup = FaceLookup(positions, faces, (height, width), near=near)
-    parts = [_along(segments, axis, visibility, positions, edges, lookup) for axis in (0, 1)]
-    return Crossings(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+    parts = [_along(segments, axis, (height, width), positions, edges, lookup) for axis in (0, 1)]
+    found = _Candidates.joined(parts)
+    return [found.of_layer(k, layer) for k, layer in enumerate(layers)]
 
 
 def antialias(color: FloatArray, crossings: Crossings) -> FloatArray:
@@ -158,16 +185,56 @@ def _limit(crossings: Crossings, pixels: int) -> FloatArray:
     return np.maximum(taken, 1.0)
 
 
+@dataclass(frozen=True, eq=False)
+class _Candidates:
+    """Silhouettes between the centers of pixels, hidden ones too; N rows each.
+
+    Attributes:
+        inner, outer: numbers of pixels, on the side of the face and on the other.
+        s: where the segment from the first to the second is crossed.
+        d_line: (N, 3) ds/dE.
+        edge: number of the edge.
+        hidden: how many faces hide it; -1 where its depth is out of float64's range.
+    """
+
+    inner: npt.NDArray[np.int64]
+    outer: npt.NDArray[np.int64]
+    s: FloatArray
+    d_line: FloatArray
+    edge: npt.NDArray[np.int64]
+    hidden: npt.NDArray[np.int64]
+
+    @classmethod
+    def joined(cls, parts: Sequence[_Candidates]) -> _Candidates:
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return cls(*(np.concatenate(each) for each in columns))
+
+    def of_layer(self, number: int, visibility: Visibility) -> Crossings:
+        """Those that so many faces hide, where the layer shows other faces on both sides."""
+        face = visibility.face.reshape(-1)
+        kept = (self.hidden == number) & (face[self.inner] != face[self.outer])
+        outer_takes = self.s > 0.5
+        sign = np.where(outer_takes, 1.0, -1.0)
+        found = (
+            np.where(outer_takes, self.outer, self.inner),
+            np.where(outer_takes, self.inner, self.outer),
+            sign * (self.s - 0.5),
+            sign[:, None] * self.d_line,
+            self.edge,
+        )
+        return Crossings(*(each[kept] for each in found))
+
+
 def _along(
     segments: Segments,
     axis: int,
-    visibility: Visibility,
+    size: tuple[int, int],
     positions: FloatArray,
     edges: MeshEdges,
     lookup: FaceLookup,
-) -> tuple[Array, ...]:
-    """The fields of `Crossings` in rows (axis 0) or columns (axis 1)."""
-    height, width = visibility.face.shape
+) -> _Candidates:
+    """Silhouettes that cross rows (axis 0) or columns (axis 1)."""
+    height, width = size
     other = 1 - axis
     steep = np.abs(segments.line[:, 0]) >= np.abs(segments.line[:, 1])
     asked = (steep == (axis == 0)) & (segments.side != 0)
@@ -192,23 +259,14 @@ def _along(
     depth = _depth(positions[edges.ends[edge, 0]], positions[edges.ends[edge, 1]], points)
     beside = points.copy()
     beside[:, axis] += OUTSIDE * direction
-    visible = lookup.nearest(beside)[1] > depth
-    numbers = [inner, inner + direction]
-    pixels = [_pixel(number, at, axis, width) for number in numbers]
-    face = visibility.face.reshape(-1)
-    visible &= face[pixels[0]] != face[pixels[1]]
-    outer_takes = s > 0.5
-    sign = np.where(outer_takes, 1.0, -1.0)
-    homogeneous = np.insert(points, 2, 1.0, axis=1)
-    d_line = (-sign * direction / line[:, axis])[:, None] * homogeneous
-    found = (
-        np.where(outer_takes, pixels[1], pixels[0]),
-        np.where(outer_takes, pixels[0], pixels[1]),
-        sign * (s - 0.5),
-        d_line,
-        edge,
+    inner_pixel, outer_pixel = (
+        _pixel(number, at, axis, width) for number in (inner, inner + direction)
     )
-    return tuple(each[visible] for each in found)
+    homogeneous = np.insert(points, 2, 1.0, axis=1)
+    d_line = (-direction / line[:, axis])[:, None] * homogeneous
+    known = np.isfinite(depth)
+    hidden = np.where(known, lookup.count(beside, np.where(known, depth, 0.0)), -1)
+    return _Candidates(inner_pixel, outer_pixel, s, d_line, edge, hidden)
 
 
 def _pixel(number: FloatArray, at: FloatArray, axis: int, width: int) -> npt.NDArray[np.int64]:

@@ -34,7 +34,7 @@ class MeshEdges:
 
     @classmethod
     def of(cls, faces: Array, vertices: Array | None = None) -> MeshEdges:
-        """The edges of triangles.
+        """The edges of triangles; those of one vertex twice are left out.
 
         Args:
             faces: (F, 3) vertex numbers.
@@ -52,6 +52,8 @@ class MeshEdges:
             high = len(vertices) - 1
             faces = call.array("faces", faces, ("F", 3), dtype=np.int64, low=0, high=high)
             faces = _first_of_each_position(vertices)[faces]
+        # A face with one vertex twice has no area, and would make a border look like an inner edge.
+        faces = faces[(faces != np.roll(faces, -1, axis=1)).all(axis=1)]
         corners = np.roll(faces, -1, axis=1), np.roll(faces, -2, axis=1)
         pairs = np.sort(np.stack(corners, axis=-1).reshape(-1, 2), axis=1)
         ends, number = np.unique(pairs, axis=0, return_inverse=True)

@@ -53,3 +53,20 @@ class FaceLookup:
         points = call.array("points", points, ("N", 2))
         face, depth = call.run(self._core.nearest, points, self._near, float(far))
         return face, depth
+
+    def count(self, points: FloatArray, depth: FloatArray) -> npt.NDArray[np.int32]:
+        """Numbers (N,) of the faces at points (N, 2) in pixels that are no farther than `depth`.
+
+        Args:
+            points: (N, 2) in pixels; outside of the picture there is no face.
+            depth: (N,) meters.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: points or depths that are not finite numbers of
+                these shapes.
+        """
+        call = Arguments("FaceLookup.count", np.float64)
+        points = call.array("points", points, ("N", 2))
+        depth = call.array("depth", depth, (len(points),))
+        found: npt.NDArray[np.int32] = call.run(self._core.count, points, depth, self._near)
+        return found
