@@ -48,7 +48,7 @@ class Seen(HTMLParser):
         if "data-copy" in named:
             self.values.append(named["data-copy"])
         self.formulas += tag == "math"
-        self.displayed += named.get("class") == "equation"
+        self.displayed += named.get("class", "").startswith("equation")
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 CAPTION = re.compile(r"Figure (\d+)\.")
 VALUES = re.compile(r"(?:Check values|Values to check)\b")
 CITED = re.compile(r"\[([A-Z][A-Za-z-]+\d{4}[a-z]?)\] ")
+LONG, LONGER = 69, 84  # characters of a formula that is set smaller, to fit the column
 NUMBERED = re.compile(r"(\d+)\. ")
 
 
@@ -208,11 +209,20 @@ def _render_math_block(_self: Any, tokens: Any, at: int, _options: Any, _env: An
     name = f' id="eq-{tag}"' if tag else ""
     called = f"Equation {tag}" if tag else "Formula"
     number = f'<span class="number">({escape(tag)})</span>' if tag else ""
-    shown = "".join(to_mathml(piece, display=True) for piece in split_pieces(tex))
+    pieces = [to_mathml(piece, display=True) for piece in split_pieces(tex)]
+    shown = "".join(pieces)
+    length = max(_length(piece) for piece in pieces)
+    size = " longer" if length > LONGER else " long" if length > LONG else ""
     return (
-        f'<div class="equation"{name}><div class="scroll" tabindex="0" role="group" '
+        f'<div class="equation{size}"{name}><div class="scroll" tabindex="0" role="group" '
         f'aria-label="{called}">{shown}</div>{number}</div>\n'
     )
+
+
+def _length(mathml: str) -> int:
+    """Characters on the longest line of a formula, about; a fraction counts with both parts."""
+    rows = re.split(r"</mtr>", mathml)
+    return max(len(re.sub(r"<[^>]*>", "", row)) for row in rows)
 
 
 def _render_image(_self: Any, tokens: Any, at: int, _options: Any, _env: Any) -> str:
