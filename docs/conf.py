@@ -15,6 +15,7 @@ from sphinx.util.inspect import TypeAliasForwardRef
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import api_pages
 import docstrings
+import mathematics
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -29,6 +30,8 @@ bibtex_default_style = "keys"
 exclude_patterns = ["README.md"]
 html_theme = "furo"
 html_title = "photograd"
+html_math_renderer = "mathml"  # of mathematics.py: needs no network
+html_static_path = ["../python/photograd_course/src/photograd_course/build/page/mathematics.woff2"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 smartquotes_action = "qe"  # -- stands before options
@@ -111,6 +114,7 @@ def _skip_overrides(
 
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
+    mathematics.register(app)
     app.connect("config-inited", lambda *_: api_pages.write())
     app.connect("autodoc-process-signature", _edit_signature)
     app.connect("autodoc-skip-member", _skip_overrides)

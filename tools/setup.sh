@@ -18,7 +18,10 @@ zlib               | header:zlib.h                        | zlib1g-dev
 Python's headers   | python:headers                       | python3-dev
 Python's venv      | python:venv                          | python3-venv
 TABLE
-    if [ "$1" = dev ]; then
+    if [ "$1" = all ]; then
+        echo "Chromium           | command:chromium                     | chromium"
+    fi
+    if [ "$1" = dev ] || [ "$1" = all ]; then
         echo "doctest            | header:doctest/doctest.h             | doctest-dev"
         # Tests of the grader's isolation.
         echo "bubblewrap         | command:bwrap                        | bubblewrap"

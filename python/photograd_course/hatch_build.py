@@ -1,7 +1,7 @@
 """Put the stripped kits into a wheel: `photograd_course/kits/NN_name/{kit,checks}/`.
 
-Runs wherever a wheel or an sdist is built, with nothing installed but the build backend (and tomli
-on Python 3.10): the stripping code is loaded without the package around it, which needs NumPy. An
+Runs wherever a wheel or an sdist is built, with nothing installed but what pyproject.toml asks for:
+the stripping code is loaded without the package around it, which needs NumPy. An
 editable install gets no kits; there they are stripped from `assignments/` when asked for.
 """
 
@@ -53,7 +53,7 @@ def write_kits(target: Path) -> list[Path]:
     for folder in sorted(ASSIGNMENTS.iterdir()):
         if not (folder / "assignment.toml").exists():
             continue
-        for inside, data in wheel_kits(folder).items():
+        for inside, data in wheel_kits(folder, pages=True).items():
             path = target / folder.name / inside
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)

@@ -222,7 +222,8 @@ def test_the_built_wheel_holds_stripped_kits(tmp_path: Path) -> None:
     subprocess.run(command, cwd=COURSE, check=True, capture_output=True)
     (path,) = tmp_path.glob("*.whl")
     kits = kits_in(path.read_bytes())
-    wanted = wheel_kits(ROOT / "assignments" / "00_setup")
+    wanted = wheel_kits(ROOT / "assignments" / "00_setup", pages=True)
+    assert "kit/handout.html" in wanted
     assert {p: d for p, d in kits.items() if p.startswith("00_")} == {
         f"00_setup/{inside}": data for inside, data in wanted.items()
     }

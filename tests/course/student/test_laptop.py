@@ -42,6 +42,7 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
         "explore.py",
         "figures/fig1_gradient.png",
         "first_gradient.py",
+        "handout.html",
     }
 
     red = laptop.run("course", "check", "00", "--json", cwd=work)
@@ -68,6 +69,20 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     assert packed.returncode == 0, packed.stderr
     with zipfile.ZipFile(work / "00_setup_submission.zip") as archive:
         assert set(archive.namelist()) == {"first_gradient.py", "answers.toml"}
+
+
+def test_a_handout_is_read_where_nothing_can_make_one(laptop: Laptop, tmp_path: Path) -> None:
+    makes = "import latex2mathml"
+    assert laptop.call([str(laptop.python), "-c", makes], tmp_path).returncode != 0
+    assert laptop.run("course", "start", "00", cwd=tmp_path).returncode == 0
+    for number, name in (("00", "00_setup/handout.html"), ("01", "01_gradient_descent.html")):
+        told = laptop.run("course", "read", number, cwd=tmp_path)
+        assert told.returncode == 0, told.stderr
+        assert Path(told.stdout.strip()) == tmp_path / name
+        page = (tmp_path / name).read_text("utf-8")
+        assert "<math" in page
+        assert 'src="data:image/png;base64,' in page
+        assert 'src="figures/' not in page
 
 
 def test_the_core_is_said_to_be_missing_and_costs_nothing(laptop: Laptop, tmp_path: Path) -> None:

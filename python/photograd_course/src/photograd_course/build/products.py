@@ -11,7 +11,8 @@ from .assignment_build import AssignmentBuild
 from .gradescope import EXECUTABLE, gradescope_zip
 from .hint_table import hints_of
 from .matrix import matrix_files
-from .public import kit_files, public_files
+from .page.page import handout_page, with_figures
+from .public import PAGE, glossary, kit_files, public_files
 from .seal import bundle_files, seal_bundle
 
 SOLUTION = ("handout.md", "figures.py", "explore.py", "equivalent.toml")
@@ -57,12 +58,25 @@ def make_products(build: AssignmentBuild, wheels: Mapping[str, bytes] | None = N
     hidden = sealed(build)
     number, secret = build.manifest.id, build.secret
     return Products(
-        kit=kit_files(build.folder),
+        kit=complete_kit(build.folder),
         public=public_files(build.folder),
         hidden=hidden,
         solution=solution_files(build),
         gradescope=gradescope_zip(number, hidden, secret, wheels),
     )
+
+
+def complete_kit(folder: Path) -> dict[str, bytes]:
+    """The student's folder with the handout as a page that holds its figures.
+
+    Args:
+        folder: an assignment's source folder.
+    """
+    files = kit_files(folder)
+    if "README.md" in files:
+        page = handout_page(files["README.md"].decode("utf-8"), glossary(folder.parent))
+        files[PAGE] = with_figures(page, files).encode("utf-8")
+    return dict(sorted(files.items()))
 
 
 def sealed(build: AssignmentBuild) -> bytes:

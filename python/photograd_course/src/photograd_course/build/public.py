@@ -1,7 +1,7 @@
 """What leaves the instructor's folder: files of the kit, and files of the public checks.
 
 Pure functions of a source folder, also called while a wheel is built, so only the standard library
-(and tomli on Python 3.10) is needed here.
+(and tomli on Python 3.10) is needed here, and for pages what the extra `handouts` names.
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ from ..assignment.check_files import public_check_files
 from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.toml import read_toml
 from .notebook import notebook_of
+from .page.page import handout_page
 from .regions import strip_solution
 from .toml_text import tables, toml_key
 
 SECRET_KEYS = ("answer", "because")  # of questions
+PAGE = "handout.html"  # of the kit: README.md as a page
 COPIED = ("figures/*.png", "data/*")  # into the kit as they are
 
 
@@ -99,10 +101,24 @@ def readme(manifest: Manifest, handout: str) -> str:
     return f"{title}\n{work}{rest}"
 
 
-def wheel_kits(folder: Path) -> dict[str, bytes]:
-    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and public/."""
-    kit = {f"kit/{path}": data for path, data in kit_files(folder).items()}
+def wheel_kits(folder: Path, *, pages: bool = False) -> dict[str, bytes]:
+    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and public/.
+
+    Args:
+        folder: an assignment's source folder.
+        pages: with the handout as a page, whose figures are those beside it.
+    """
+    files = kit_files(folder)
+    if pages and "README.md" in files:
+        files[PAGE] = _encode(handout_page(files["README.md"].decode(), glossary(folder.parent)))
+    kit = {f"kit/{path}": data for path, data in sorted(files.items())}
     return {**kit, **{f"public/{path}": data for path, data in public_files(folder).items()}}
+
+
+def glossary(root: Path) -> dict[str, str]:
+    """Words of the course and the sentence that explains each, from `glossary.toml`."""
+    path = root / "glossary.toml"
+    return {k: str(v) for k, v in read_toml(path)["words"].items()} if path.exists() else {}
 
 
 def questions_without_keys(folder: Path) -> str:

@@ -15,6 +15,7 @@ import typer
 COMMANDS = (
     "list",
     "start",
+    "read",
     "check",
     "predict",
     "questions",

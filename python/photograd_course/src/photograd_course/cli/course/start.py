@@ -32,11 +32,15 @@ def register(course: typer.Typer) -> None:
         from rich.console import Console
 
         from ...build.kits import find_kit
+        from ...build.public import PAGE
+        from ...student.reading import kit_page
         from ...student.starting import lay_out, with_own_modules
 
         kit = find_kit(assignment)
         target = folder or Path(kit.manifest.folder_name)
         files, taken = with_own_modules(kit.files, kit.manifest, target)
+        if page := kit_page(files):
+            files[PAGE] = page
         lay_out(files, target)
         console = Console(highlight=False)
         for path in taken:
@@ -53,7 +57,7 @@ def _next_steps(number: str, module: str, target: Path, *, predicts: bool) -> li
     return [
         f"cd {target}",
         *first,
-        "read README.md",
+        f"photograd course read {number}      (the handout in your browser)",
         f"photograd course check {number}     (red at first)",
         f"write {module}.py, and check again until all is green",
         f"photograd course submit {number}",
