@@ -11,6 +11,7 @@ import av
 import numpy as np
 import pytest
 from photograd.capture import load_capture
+from photograd.fitting import load_model
 from photograd.images import read_image
 
 from tests.commands.conftest import Photograd
@@ -146,6 +147,11 @@ def test_depth_and_opacity_are_drawn(
     assert opacity.max() > 0.9
     seen = np.isfinite(found["depth"])
     np.testing.assert_array_equal(seen, found["opacity"] >= 1 / 255)
+    # A mean distance, also of what is half transparent: nothing lies before or behind the box.
+    box = load_model(model_folder).field.box
+    far_off = np.linalg.norm(found["world_from_camera"][:, :3, 3] - box.mean(axis=0), axis=1)
+    off = (found["depth"] - far_off[:, None, None])[seen]
+    assert np.abs(off).max() < 0.5 * np.linalg.norm(box[1] - box[0])
     depth = pictures_in(tmp_path / "d")
     assert (depth[~seen] == 1).all()
     near, far = told[1]["near_m"], told[1]["far_m"]

@@ -48,7 +48,7 @@ def test_focal_lengths_are_interpolated_and_sizes_are_the_first_ones() -> None:
 
 
 def test_another_size_shows_the_same_height() -> None:
-    camera = replace(orbit_cameras(BOX, 1, size=32)[0], cy=14.0)
+    camera = replace(orbit_cameras(BOX, 1, size=32)[0], cx=17.5, cy=14.0)
     wide = resized_camera(camera, 128, 64)
     points = np.array([[0.2, 0.3, -0.1], [-0.4, 0.1, 0.2]])
     there, back = wide.project(points)[0], camera.project(points)[0]

@@ -23,6 +23,7 @@ from photograd.commands import (
     simplify,
     trace,
     vectorize,
+    view,
 )
 
 
@@ -32,6 +33,7 @@ def register(app: typer.Typer) -> None:
         capture,
         fit,
         render,
+        view,
         trace,
         frame,
         bake_ao,

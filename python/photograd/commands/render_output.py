@@ -142,9 +142,9 @@ class Output:
             frames = (np.repeat(_clipped(each.opacity)[..., None], 3, axis=2) for each in pictures)
         else:
             depths = [picture.depth for picture in pictures]
-            near, far = self.depth_range or _depth_range(depths)
+            near, far = self.depth_range or depth_range(depths)
             told = {"near_m": near, "far_m": far}
-            frames = (_depth_colors(depth, near, far) for depth in depths)
+            frames = (depth_colors(depth, near, far) for depth in depths)
         self._save(frames)
         return told
 
@@ -188,7 +188,7 @@ def _clipped(values: Array) -> Array:
     return np.clip(values.astype(np.float64), 0.0, 1.0)
 
 
-def _depth_range(depths: Sequence[Array]) -> tuple[float, float]:
+def depth_range(depths: Sequence[Array]) -> tuple[float, float]:
     """Between which 98 % of all depths lie."""
     visible = np.concatenate([depth[np.isfinite(depth)].ravel() for depth in depths])
     if not visible.size:
@@ -198,7 +198,7 @@ def _depth_range(depths: Sequence[Array]) -> tuple[float, float]:
     return near, max(far, near * (1 + 1e-6) + 1e-12)
 
 
-def _depth_colors(depth: Array, near: float, far: float) -> Array:
+def depth_colors(depth: Array, near: float, far: float) -> Array:
     """Depths (H, W) as display colors (H, W, 3); white where there is none."""
     from matplotlib import colormaps
 

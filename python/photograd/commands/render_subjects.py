@@ -46,12 +46,14 @@ class Subject:
         capture: folder of the photographs that it was fitted to, if it says so.
         from_capture: camera of a capture, and the capture's (4, 4) world_from_source -> the camera
             in that frame.
+        background: linear (3,) that was learned with a model, or None.
     """
 
     box: Array
     draw: Callable[[Camera], Picture]
     capture: str | None = None
     from_capture: Callable[[Camera, FloatArray], Camera] = lambda camera, _: camera
+    background: Array | None = None
 
 
 def check_up(up: str) -> None:
@@ -92,6 +94,7 @@ def _model(model: Model) -> Subject:
         model.field.box,
         lambda camera: draw_field(model.field, model.background, camera),
         str(captured) if captured else None,
+        background=model.background,
     )
 
 

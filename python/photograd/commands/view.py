@@ -1,0 +1,118 @@
+"""`photograd view`: look around in a browser, while everything is rendered by this project."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from photograd_course.cli import DebugOption, JsonOption, ThreadsOption, emit, note
+
+from photograd._checkpoint import FILE_NAME
+from photograd.capture import Capture, load_capture
+from photograd.commands.drawable import TRACED
+from photograd.commands.render_subjects import AUTO, UpOption, check_up
+from photograd.commands.shared import DepthOption, SppOption, stop_on_signals, use_threads
+from photograd.commands.view_drawing import Viewed, viewed_file, viewed_scene
+from photograd.commands.view_server import Page
+from photograd.errors import Error
+from photograd.splats.files import is_gaussian_ply
+from photograd.transport.builtin import BUILTIN
+
+LOOPBACK = "127.0.0.1"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("view")(view)
+
+
+def view(
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="Folder of a fit, or its model.npz; a volume; a file of Gaussians; the folder of "
+            "a capture; a scene or mesh file, or the name of a built-in scene.",
+            metavar="WHAT",
+        ),
+    ],
+    capture: Annotated[
+        Path | None,
+        typer.Option(
+            "--capture",
+            help="Folder of photographs to show as well; by default what a model was fitted to.",
+        ),
+    ] = None,
+    host: Annotated[
+        str,
+        typer.Option(
+            "--host", help="Address to listen at; 0.0.0.0 shows the page to the whole network."
+        ),
+    ] = LOOPBACK,
+    port: Annotated[
+        int,
+        typer.Option(
+            "--port", min=1, max=65535, help="Port to listen at, or the next one that is free."
+        ),
+    ] = 8080,
+    size: Annotated[
+        int, typer.Option("--size", min=16, help="Pixels along the longer edge of a picture.")
+    ] = 1024,
+    up: UpOption = AUTO,
+    spp: SppOption = 64,
+    max_depth: DepthOption = 8,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Look at a model, Gaussians, a volume, a capture or a scene in a browser, until Ctrl-C.
+
+    Pictures are rendered here, a quarter of the resolution while the camera moves, then all of it;
+    scenes go on with more samples. There are layers for depth and opacity, a slider for the steps
+    of a fit, and frusta for photographs. It needs no network: pip install 'photograd[viewer]'.
+
+    Example: photograd view model
+    """
+    use_threads(threads)
+    check_up(up)
+    viewed, photographs = _found(what, capture, up, spp, max_depth)
+    page = Page(viewed, photographs, host=host, port=port, largest=size)
+    note(f"{page.address} shows {what}; Ctrl-C ends")
+    try:
+        with stop_on_signals() as stopping:
+            while not stopping():
+                time.sleep(0.1)
+    finally:
+        page.close()
+    emit({"address": page.address}, as_json=as_json, title="view")
+
+
+def _found(
+    what: str, capture: Path | None, up: str, spp: int, max_depth: int
+) -> tuple[Viewed | None, Capture | None]:
+    """What there is to draw, and photographs; one of them may be None."""
+    path = Path(what)
+    mesh = path.suffix.lower() == ".ply" and path.is_file() and not is_gaussian_ply(path)
+    if what in BUILTIN or mesh or (what.lower().endswith(TRACED) and path.suffix.lower() != ".ply"):
+        scene = viewed_scene(what, spp=spp, max_depth=max_depth)
+        return scene, None if capture is None else _photographs(capture)
+    if path.is_dir() and not (path / FILE_NAME).exists():
+        return None, _photographs(path)
+    viewed = viewed_file(path, up)
+    if capture is not None:
+        return viewed, _photographs(capture)
+    if viewed.capture is None or not Path(viewed.capture).exists():
+        return viewed, None
+    try:
+        return viewed, _photographs(Path(viewed.capture))
+    except Error as failure:  # the model is there all the same
+        note(f"without photographs: {failure}", style="yellow")
+        return viewed, None
+
+
+def _photographs(folder: Path) -> Capture:
+    capture = load_capture(folder)
+    for line in capture.conversions:
+        note(line)
+    return capture
