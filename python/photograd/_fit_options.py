@@ -55,6 +55,7 @@ class FitOptions:
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
         laplacian, normal_consistency: weights of priors on the shape of a mesh; 0 switches one off.
+        remesh: whether a mesh gets new triangles of equal size at `refine_at`.
         opacity: whether the opacity of a mesh's texels is recovered, too.
     """
 
@@ -82,6 +83,7 @@ class FitOptions:
     laplacian: float = 0.0
     normal_consistency: float = 0.0
     opacity: bool = False
+    remesh: bool = False
 
     def __post_init__(self) -> None:
         """Raises DtypeError or RangeError, naming the option."""

@@ -20,6 +20,7 @@ from photograd.geometry.icosphere import icosphere
 from photograd_course.color import srgb_encode, unpremultiply
 
 from support.bits import same_bits
+from support.missing import need_installed
 from tests.fit import scene
 from tests.fit.mesh_scene import cube
 from tests.fit.mesh_scene import truth as textured_cube
@@ -88,6 +89,38 @@ def test_a_stopped_fit_ends_with_the_same_bits(tmp_path: Path) -> None:
     run(start(**few), tmp_path / "stopped", until=3)
     run(Fit.resume(capture(16), tmp_path / "stopped"), tmp_path / "stopped")
     assert_same(tmp_path / "straight", tmp_path / "stopped")
+
+
+def test_a_mesh_with_new_triangles_goes_on_and_resumes_with_the_same_bits(tmp_path: Path) -> None:
+    need_installed("gpytoolbox")
+    few = {"size": 16, "steps": 10, "remesh": True}
+    job = start(**few)
+    assert set(MeshSurface.events(job.options)) == {1, 4}
+    first = job.model.params["differential"].shape
+    run(start(**few), tmp_path / "straight")
+    for until in (1, 4, 6):  # before each new mesh, and after both
+        run(start(**few), tmp_path / f"{until}", until=until)
+        run(Fit.resume(capture(16), tmp_path / f"{until}"), tmp_path / f"{until}")
+        assert_same(tmp_path / "straight", tmp_path / f"{until}")
+    field: Any = load_model(tmp_path / "straight").field
+    assert field.params["differential"].shape != first
+    assert (field.edges.borders, field.edges.crowded) == (0, 0)
+
+
+def test_new_triangles_keep_shape_and_colors() -> None:
+    need_installed("gpytoolbox")
+    field: Any = truth().field
+    after = field.remeshed()
+    assert 0.8 < len(after.faces) / len(field.faces) < 1.2
+    assert after.policy == field.policy
+    assert chamfer(after.vertices, field.vertices) < 0.03  # of vertices; edges are 0.06 long
+    camera = capture().test[0].camera
+    color, opacity, _ = render_camera(Model.of(after), camera)
+    wanted, covered, _ = render_camera(truth(), camera)
+    assert np.square(color - wanted).mean() < 1e-3  # 30 dB
+    assert np.abs(opacity - covered).mean() < 0.01
+    nothing = options_for("mesh", steps=10)
+    assert MeshSurface.events(nothing) == {}
 
 
 @same_bits("fit of a mesh")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import sys
 from importlib import import_module
+from importlib.util import find_spec
 from types import ModuleType
 from typing import NoReturn
 
@@ -31,3 +33,9 @@ def need_module(name: str, *, by_choice: bool = False) -> ModuleType:
         return import_module(name)
     except ImportError:
         missing(f"{name} is not installed", by_choice=by_choice)
+
+
+def need_installed(name: str) -> None:
+    """A module that is there by choice, not imported: what it says then is not the test's."""
+    if name not in sys.modules and find_spec(name) is None:
+        missing(f"{name} is not installed", by_choice=True)

@@ -163,6 +163,14 @@ NormalConsistencyOption: TypeAlias = Annotated[
 OpacityOption: TypeAlias = Annotated[
     bool, typer.Option("--opacity", help=f"Recover the opacity of a {_users('opacity')}, too.")
 ]
+RemeshOption: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--remesh",
+        help=f"New triangles of equal size for a {_users('remesh')}, at 15 and 40 % of the steps; "
+        "needs gpytoolbox.",
+    ),
+]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
@@ -239,6 +247,7 @@ def fit(
     laplacian: LaplacianOption = DEFAULTS.laplacian,
     normal_consistency: NormalConsistencyOption = DEFAULTS.normal_consistency,
     opacity: OpacityOption = DEFAULTS.opacity,
+    remesh: RemeshOption = DEFAULTS.remesh,
     start_from: StartFromOption = None,
     freeze: FreezeOption = False,
     background: BackgroundOption = DEFAULTS.background,
@@ -290,6 +299,7 @@ def fit(
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
         chosen |= {"importance": importance, "opacity": opacity}
+        chosen |= {"remesh": remesh}
         chosen |= {"laplacian": laplacian, "normal_consistency": normal_consistency}
         options = options_for(representation, **chosen)
         first = first_model(start_from, representation) if start_from else None

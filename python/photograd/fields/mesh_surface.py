@@ -3,7 +3,8 @@
     x     = (I + lambda L)^-1 u                     vertices, as [Nicolet2021] parameterizes them
     image = antialias(interpolate(sigmoid(c)))      color, opacity and depth, edges blended
 
-The faces are held: a surface keeps the topology that it starts with. `surface_picture` draws it.
+The faces are held in a step: a surface keeps the topology that it starts with. Between steps
+`remesh` may give it new ones on the same surface. `surface_picture` draws it.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from photograd_course.color import srgb_decode
-from photograd_course.portable_math import sigmoid
+from photograd_course.portable_math import log, sigmoid
 from photograd_course.random import normal_vectors, uniform
 
 from photograd._arrays import Arguments
@@ -26,6 +28,7 @@ from photograd._fit_options import FitOptions
 from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
+from photograd.fields.bake import colors_nearby
 from photograd.fields.surface import (
     Surface,
     SurfacePolicy,
@@ -38,8 +41,11 @@ from photograd.fields.surface_picture import SurfacePicture
 from photograd.fields.textured_mesh import TexturedMesh
 from photograd.geometry.icosphere import icosphere
 from photograd.geometry.large_steps import LargeSteps
+from photograd.geometry.normals import vertex_normals
+from photograd.geometry.remesh import remesh, surface_area
 from photograd.representation import (
     COPIES,
+    FitInProgress,
     ImageBatch,
     Memory,
     Outputs,
@@ -73,6 +79,7 @@ class MeshSurface(Surface):
     """
 
     name: ClassVar[str] = "mesh"
+    fit_options: ClassVar[frozenset[str]] = Surface.fit_options | {"remesh"}
     counts: ClassVar[str] = "sphere"
     fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 16, "steps": 1000}
 
@@ -256,6 +263,49 @@ class MeshSurface(Surface):
         source = "ellipsoid in the box" if first is None else f"that of the {first.name}"
         return field, f"mesh: {source}, {len(field.faces):,} triangles"
 
+    def adapted(self, fit: FitInProgress) -> Self:
+        """With new triangles where the options say so; the optimizer's moments begin anew.
+
+        Raises IoError where the library that makes them is not installed.
+        """
+        if fit.step_number not in self.events(fit.options):
+            return self
+        after = self.remeshed()
+        for name, values in after.params.items():
+            fit.optimizer.resample(name, partial(_emptied, values))
+        return after
+
+    @classmethod
+    def events(cls, options: FitOptions) -> dict[int, str]:
+        """Each new mesh."""
+        if not options.remesh:
+            return {}
+        return {int(part * options.steps): "remeshed" for part in options.refine_at}
+
+    def remeshed(self) -> Self:
+        """About as many triangles of equal size on the same surface, its colors looked up there.
+
+        Raises:
+            IoError: the library is not installed; the extra is `remesh`.
+            SceneError: what came out is not manifold.
+        """
+        before = self.vertices
+        area = surface_area(before, self.faces)
+        length = math.sqrt(area / len(self.faces) * 4 / math.sqrt(3))
+        vertices, faces = remesh(before, self.faces, length)
+        colors, found = colors_nearby(vertices, vertex_normals(vertices, faces), self)
+        for row in np.flatnonzero(~found):
+            near = np.square(before - vertices[row]).sum(axis=1).argmin()
+            colors[row, :3] = self.colors()[near]
+        kept = np.clip(colors[:, :3], 1e-6, 1 - 1e-6)
+        logits = log(kept) - log(1 - kept)
+        dtype = self.params["differential"].dtype.type
+        after = type(self).of_mesh(
+            vertices, faces, logits, smoothness=self.policy.smoothness, dtype=dtype
+        )
+        after.policy = self.policy  # extent and rates are those of the start
+        return after
+
     @classmethod
     def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
         """A row a vertex; the faces."""
@@ -314,3 +364,8 @@ class MeshSurface(Surface):
         arrays = self.stored()
         write_glowing_mesh(path, arrays["vertices"], self.faces, colors=arrays["colors"])
         return (f"its vertex colors are radiance: {UNLIT} shows them without lights",)
+
+
+def _emptied(values: Array, moment: FloatArray) -> FloatArray:
+    """A moment of no history for new `values`."""
+    return np.zeros(values.shape, moment.dtype)

@@ -218,7 +218,8 @@ class TexturedSurface(Surface):
         place = np.zeros(len(self.params["differential"]), np.int64)
         place[flat.vertex] = np.arange(len(flat.vertex))
         colors = sample(self.rgba(), flat.uv[place])[None]
-        return raw_texels(colors, None)[0]
+        found: Array = raw_texels(colors, None)[0]
+        return found
 
     def unsmoothed(self) -> Self:
         """The same mesh with smoothness 0."""

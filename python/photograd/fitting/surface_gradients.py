@@ -28,7 +28,7 @@ CAPTION = (
     "Left: the view. Arrows: where lower loss would take each visible vertex on the screen; blue "
     "outward, orange inward. Middle: what comes through "
     "silhouettes, which antialiasing makes differentiable. Right: what comes from colors inside of "
-    "faces, of vertices or a texture; its arrows are {factor} longer."
+    "faces, of vertices or a texture; its arrows are {scale}."
 )
 
 
@@ -103,7 +103,8 @@ def draw_surface_gradients(
     height = PANEL * (lower - upper) / (right_end - left_end)
     width = LEFT + 3 * (PANEL + GAP)
     factor = _factor(rows)
-    caption = CAPTION.format(factor=f"{factor:g} times")
+    scale_of_both = "drawn to the same scale" if factor == 1 else f"{factor:g} times longer"
+    caption = CAPTION.format(scale=scale_of_both)
     bottom = style.caption_height(caption, width - LEFT - 0.1) + 0.05
     with style.house_style():
         figure = style.new_figure(width, TOP + len(rows) * (height + GAP) + bottom)
@@ -137,7 +138,7 @@ def _frame(rows: Mapping[int, SurfaceGradients]) -> tuple[float, float, float, f
     pixels = np.concatenate([found.pixels[found.visible] for found in rows.values()])
     if not len(pixels):
         return 0.0, float(width), float(height), 0.0
-    room = 0.12 * float(np.ptp(pixels, axis=0).max()) + 1
+    room = 0.2 * float(np.ptp(pixels, axis=0).max()) + 1
     low = np.maximum(pixels.min(axis=0) - room, 0)
     high = np.minimum(pixels.max(axis=0) + room, [width, height])
     return float(low[0]), float(high[0]), float(high[1]), float(low[1])
