@@ -18,7 +18,7 @@ from .page.page import handout_page
 from .regions import strip_solution
 from .toml_text import tables, toml_key
 
-SECRET_KEYS = ("answer", "because")  # of questions
+SECRET_KEYS = ("answer", "because", "where")  # of questions
 GLOSSARY = "glossary.toml"  # of the course, beside the assignments
 PAGE = "handout.html"  # of the kit: README.md as a page
 COPIED = ("figures/*.png", "data/*")  # into the kit as they are
