@@ -20,6 +20,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE / "src" / "photograd_course"
 ASSIGNMENTS = HERE.parents[1] / "assignments"
+PLAN = "course.toml"
 # What `build.public` uses, and the packages whose __init__ would import more.
 PACKAGES = ("photograd_course", "photograd_course.assignment", "photograd_course.build")
 
@@ -50,6 +51,8 @@ def write_kits(target: Path) -> list[Path]:
     """Write the kit and the public checks of every assignment; the files written."""
     wheel_kits = load_stripper()
     written = []
+    if (ASSIGNMENTS / PLAN).exists():
+        written.append(Path(shutil.copy(ASSIGNMENTS / PLAN, target / PLAN)))
     for folder in sorted(ASSIGNMENTS.iterdir()):
         if not (folder / "assignment.toml").exists():
             continue

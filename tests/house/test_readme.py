@@ -29,6 +29,7 @@ finally:
     sys.path.pop(0)
 
 PAGES = ["README.md", "CONTRIBUTING.md", "docs/architecture.md"]
+SETTINGS = {"PHOTOGRAD_ASSIGNMENTS"}
 KINDS = {"run", "commands", "text"}
 BLOCK = re.compile(r"(?:^<!-- check: (\w+) -->\n)?^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PATH = re.compile(r"`((?:cpp|python|tests|docs|bench|tools|assignments)/[\w./-]*)`")
@@ -78,8 +79,11 @@ def faults(line: str) -> list[str]:
         if page is None:
             return [f"photograd has no command {name}"]
         return [f"{name} has no {w}" for w in words if w.startswith("--") and w not in page]
+    if words[0] == "export":
+        return [] if words[1].partition("=")[0] in SETTINGS else [f"no setting {words[1]}"]
     if words[0] in {"pip", "cmake", "ctest", "git"}:
-        return [f"no {word}" for word in words if "/" in word and not (ROOT / word).exists()]
+        places = [word.partition("[")[0] for word in words if "/" in word]
+        return [f"no {place}" for place in places if not (ROOT / place).exists()]
     return (
         []
         if (ROOT / words[0]).exists() or words[0].startswith(".venv/bin/")

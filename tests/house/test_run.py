@@ -12,7 +12,7 @@ import pytest
 
 from support.tree import ROOT
 
-COMMANDS = ["demo", "test", "lint", "bench", "fuzz", "wheel", "docs", "clean", "help"]
+COMMANDS = ["demo", "test", "lint", "bench", "fuzz", "wheel", "release", "docs", "clean", "help"]
 
 
 def call(*words: str) -> subprocess.CompletedProcess[str]:

@@ -80,6 +80,18 @@ def test_an_unknown_assignment_is_refused_with_those_that_exist(scaffold: Path) 
         find_kit("18", scaffold.parent)
 
 
+def test_a_planned_assignment_is_said_to_be_planned(scaffold: Path, tmp_path: Path) -> None:
+    shutil.copytree(scaffold, tmp_path / scaffold.name)
+    plan = '[[assignment]]\nid = "06"\ntitle = "The frame"\n\n[[assignment]]\nid = "17"\n'
+    (tmp_path / "course.toml").write_text(plan, "utf-8")
+    for name in ("06", "6"):
+        with pytest.raises(RangeError, match=r"ready, got 06, The frame, which is planned .* 17"):
+            find_kit(name, tmp_path)
+    assert find_kit("17", tmp_path).manifest.id == "17"
+    with pytest.raises(RangeError, match="photograd course: assignment: expected one that exists"):
+        find_kit("18", tmp_path)
+
+
 def test_line_ends_of_other_systems_make_the_same_kit(tmp_path: Path) -> None:
     copy = tmp_path / TOY.name
     shutil.copytree(TOY, copy)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -152,3 +153,14 @@ def test_outcomes_become_plain_json(bundle: Bundle) -> None:
     text = json.dumps([o.to_json() for o in found.values()])
     assert '"status": "failed"' in text
     assert "arrays" not in text
+
+
+def test_an_answer_of_another_shape_gets_no_hint_about_values(bundle: Bundle) -> None:
+    advised = replace(bundle, checks=tuple(replace(c, hint="mind the sign") for c in bundle.checks))
+    size = run(advised, GOOD.replace("-d_s * w * falling", "-1.37 * d_s * w * falling"))
+    assert size["90.2.differences"].hint == "mind the sign"
+    for wrong in ("(-d_s * w * falling)[:-1]", "None", "1.0", "(-d_s * w * falling).astype('f4')"):
+        found = run(advised, GOOD.replace("-d_s * w * falling", wrong))["90.2.differences"]
+        assert found.status is Status.FAILED
+        assert found.hint == ""
+        assert "expected" in found.text

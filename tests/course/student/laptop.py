@@ -84,6 +84,11 @@ class Laptop:
 
 def make_laptop(folder: Path) -> Laptop:
     """Build the course's wheel from this tree and lay it out with its requirements."""
+    return laptop_with(build_wheel(folder / "wheels"), folder)
+
+
+def build_wheel(target: Path) -> Path:
+    """The course's wheel of this tree."""
     subprocess.run(
         [
             sys.executable,
@@ -94,15 +99,20 @@ def make_laptop(folder: Path) -> Laptop:
             "--no-deps",
             "--no-build-isolation",
             "-w",
-            str(folder / "wheels"),
+            str(target),
             str(COURSE),
         ],
         check=True,
         stdout=subprocess.DEVNULL,
     )
+    (wheel,) = target.glob("photograd_course-*.whl")
+    return wheel
+
+
+def laptop_with(wheel: Path, folder: Path) -> Laptop:
+    """An environment with a wheel and what it requires."""
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder / "env")], check=True)
     site = next((folder / "env").glob("lib/python3*/site-packages"))
-    (wheel,) = (folder / "wheels").glob("photograd_course-*.whl")
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(site)
     compileall.compile_dir(site, quiet=1, maxlevels=20)  # as pip does

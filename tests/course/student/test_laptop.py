@@ -7,8 +7,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from photograd_course.assignment.toml import read_toml
 
 from course.student.laptop import Laptop, make_laptop
+from support.tree import ROOT
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +85,16 @@ def test_a_handout_is_read_where_nothing_can_make_one(laptop: Laptop, tmp_path: 
         assert "<math" in page
         assert 'src="data:image/png;base64,' in page
         assert 'src="figures/' not in page
+
+
+def test_a_planned_assignment_is_known_without_a_checkout(laptop: Laptop, tmp_path: Path) -> None:
+    plan = read_toml(ROOT / "assignments" / "course.toml")["assignment"]
+    ready = {path.name[:2] for path in (ROOT / "assignments").glob("[0-9]*_*")}
+    planned = [entry for entry in plan if entry["id"] not in ready]
+    for entry in planned[:1]:
+        told = laptop.run("course", "start", entry["id"], cwd=tmp_path)
+        assert told.returncode == 1
+        assert f"{entry['title']}, which is planned" in " ".join(told.stderr.split())
 
 
 def test_the_core_is_said_to_be_missing_and_costs_nothing(laptop: Laptop, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,14 @@ import typer
 from matplotlib.image import imread
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.manifest import read_manifest
+from photograd_course.assignment.questions import read_questions
+from photograd_course.build.kits import find_kit, list_kits
 from photograd_course.cli.course.start import _next_steps
 from photograd_course.errors import IoError
 from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.student.folder import WorkFolder
+from photograd_course.student.next_steps import next_steps
 from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
 from photograd_course.student.session import ask, earlier_functions, require_brought
 from photograd_course.student.terminal import said_of
@@ -81,8 +85,9 @@ def test_an_input_that_ends_says_what_is_kept(
 
 def test_predictions_come_before_reading() -> None:
     steps = _next_steps("08", "m", Path("mine"), predicts=True)
-    assert [step.split()[0] for step in steps[:3]] == ["cd", "photograd", "read"]
+    assert [step.split()[0] for step in steps[:3]] == ["cd", "photograd", "photograd"]
     assert "predict 08" in steps[1]
+    assert "read 08" in steps[2]
     assert not any("predict" in s for s in _next_steps("00", "m", Path("mine"), predicts=False))
 
 
@@ -126,3 +131,25 @@ def test_the_slice_with_the_worst_entry_is_drawn_named_and_marked() -> None:
     assert slice_name((1, 3, 4, 3), (0, 2, 1, 2)) == " (slice [0, :, :, 2])"
     got[1, 0, 0, 0] = np.nan
     assert worst_index(got, right) == (1, 0, 0, 0)
+
+
+def test_after_a_submission_the_next_assignment_is_named() -> None:
+    lines = next_steps(find_kit("01").bundle, "01_submission.zip")
+    assert "01_submission.zip" in lines[0]
+    assert "answered in the report" in lines[1]
+    assert lines[2].startswith("Then: photograd course start 02   (A backpropagation engine")
+    assert len(next_steps(find_kit("00").bundle, "a.zip")) == 2  # it asks for no predictions
+    last = find_kit(list_kits()[-1]).bundle
+    assert not any("start" in line for line in next_steps(last, "a.zip"))
+
+
+def test_where_a_prediction_is_answered_is_a_place_of_the_handout() -> None:
+    asked = 0
+    for folder in sorted(path.parent for path in (ROOT / "assignments").glob("*/questions.toml")):
+        handout = (folder / "handout.md").read_text("utf-8")
+        for question in read_questions(folder):
+            for kind, number in re.findall(r"(section|Figure) (\d+)", question.where):
+                form = rf"^## {number}\. " if kind == "section" else rf"^\*Figure {number}\."
+                assert re.search(form, handout, re.MULTILINE), (question.id, question.where)
+            asked += bool(question.where)
+    assert asked > 30

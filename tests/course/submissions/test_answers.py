@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 from photograd_course.assignment.bundle import Bundle
@@ -145,3 +146,39 @@ def test_no_result_tells_the_key(bundle: Bundle) -> None:
         "not within 1e-03 of the right value, relatively",
     }
     assert results["90.d1"].text == "not right"
+
+
+def explained(bundle: Bundle) -> Bundle:
+    """With an answer to the prediction, and reasons for all."""
+    said = {"because": "It halves.\nTwice.", "where": "section 2, Figure 1"}
+    made = [
+        replace(q, answer="b", **said)
+        if q.kind == "prediction"
+        else replace(q, because="So it is.")
+        for q in bundle.questions
+    ]
+    return replace(bundle, questions=tuple(made))
+
+
+def test_a_locked_prediction_is_answered(bundle: Bundle) -> None:
+    known = explained(bundle)
+    (prediction,) = [q for q in known.questions if q.kind == "prediction"]
+    wrong = scored(known, "", lock("a"))["90.p1"]
+    assert wrong.points == wrong.max
+    assert f"it turned out otherwise: b) {prediction.options[1]}. It halves. Twice" in wrong.text
+    assert wrong.text.endswith("see section 2, Figure 1")
+    right = scored(known, "", lock("b"))["90.p1"]
+    assert right.text.startswith("predicted and locked; right. It halves")
+    # One that is not locked could still be made.
+    assert "halves" not in scored(known, "")["90.p1"].text
+    assert "halves" not in scored(known, '[answers]\n"90.p1" = "a"\n', lock("b"))["90.p1"].text
+
+
+def test_other_questions_are_answered_after_the_due_date_alone(bundle: Bundle) -> None:
+    known = explained(bundle)
+    text = '[answers]\n"90.d1" = "a"\n'
+    assert "So it is" not in " ".join(a.text for a in scored(known, text, lock()).values())
+    closed = scored(replace(known, closed=True), text, lock())
+    assert closed["90.d1"].text == "not right. So it is"
+    assert closed["90.d1"].points == 0.0
+    assert closed["90.p1"].text.count("It halves") == 1

@@ -12,13 +12,13 @@ import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import IoError
 from photograd_course.grading import StudentFailure
+from photograd_course.printable import printable
 from photograd_course.submissions import answers, batch, one
 from photograd_course.submissions.answers import plain_answers, score_answers
 from photograd_course.submissions.batch import Batch, run_batch
 from photograd_course.submissions.exports import find_sources
 from photograd_course.submissions.load import load
 from photograd_course.submissions.one import Case, grade_guarded, grade_one
-from photograd_course.submissions.printable import printable
 from photograd_course.submissions.report import Report
 from photograd_course.submissions.run_folder import RunFolder
 from photograd_course.submissions.submission import OTHER_BYTES, SOURCE_BYTES, Submission

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.grading import Outcome, Status
+from photograd_course.printable import csv_cell, file_name, markdown, printable
 from photograd_course.submissions.answers import Answered
 from photograd_course.submissions.grades_csv import changes, changes_table, grades_table, page_name
-from photograd_course.submissions.printable import csv_cell, file_name, markdown, printable
 from photograd_course.submissions.report import Report
 from photograd_course.submissions.report_gradescope import ResultsFile, as_results, best_earlier
 from photograd_course.submissions.report_html import render_page

@@ -38,6 +38,7 @@ class Bundle:
         keys: `answers.py` as a module, with a function for each generated question; or None.
         adapters: text of `adapters.py`, which runs beside the submission; or None.
         hints: the table of known mistakes.
+        closed: nothing can be submitted any more, so that reports answer all questions.
         brought: earlier modules that the solution builds upon, by name; empty in a public bundle.
     """
 
@@ -51,6 +52,7 @@ class Bundle:
     adapters: str | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
     brought: Mapping[str, str] = field(default_factory=dict)
+    closed: bool = False
 
     @property
     def is_public(self) -> bool:

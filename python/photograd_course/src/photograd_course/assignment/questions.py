@@ -3,8 +3,8 @@
 Kinds: a *prediction* is locked before the first check and earns its points by being made; a
 *diagnosis* or *concept* question has a right answer; a *generated* one draws its numbers from the
 submission itself, and its right answer is computed by a function of `answers.py`. An answer is
-a letter ("b") where there are options, else a number. Keys (`answer`, `because`) never leave the
-grader.
+a letter ("b") where there are options, else a number. Keys (`answer`, `because`, `where`) never
+leave the grader but in reports.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ class Question:
         quote: name of a function of the submission whose last line is quoted.
         tolerance: relative, for numbers.
         answer: the key: a letter, a number, or the name of a function in `answers.py`; "" in kits.
-        because: said after the due date.
+        because, where: said of a prediction with the grade, of others after the due date: why the
+            answer is right, and where the handout says so, such as "section 2, Eq. (7)".
     """
 
     id: str
@@ -47,6 +48,7 @@ class Question:
     tolerance: float = 1e-3
     answer: str | float = ""
     because: str = ""
+    where: str = ""
 
 
 def read_questions(folder: Path) -> tuple[Question, ...]:

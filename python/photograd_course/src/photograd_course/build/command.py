@@ -18,6 +18,7 @@ from .course_files import build_of
 from .hint_table import public_hints, write_hints
 from .kits import match_folder, no_sources, source_folders, source_root
 from .products import make_products, publishable, write_tree
+from .public import GLOSSARY
 from .rules import Finding, findings, reading_findings, seed_findings
 from .secret import course_secret
 
@@ -117,7 +118,7 @@ def _publish(root: Path, folders: dict[str, Path], out: Path, found: list[Findin
     if found:
         return []
     files: dict[str, bytes] = {}
-    for path in (root / NAME, root / "README.md"):
+    for path in (root / NAME, root / GLOSSARY):
         if path.exists():
             files[path.name] = path.read_bytes()
     for name, folder in folders.items():

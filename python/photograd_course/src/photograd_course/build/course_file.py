@@ -25,9 +25,9 @@ from ..assignment.manifest import read_manifest
 from ..assignment.toml import read_toml
 from ..errors import RangeError, SceneError, message
 from ..suggest import choose_from
-from .kits import source_folders
+from .kits import PLAN, source_folders
 
-NAME = "course.toml"
+NAME = PLAN
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..assignment.bundle import Bundle, read_folder
 from ..assignment.manifest import Manifest
+from ..assignment.toml import read_toml
 from ..errors import IoError, RangeError, message
 from ..suggest import choose_from
 from .public import kit_files, public_files
@@ -17,6 +18,7 @@ from .public import kit_files, public_files
 __all__ = ["Kit", "find_kit", "kit_files", "list_kits", "public_files", "source_folders"]
 
 PACKAGE = Path(__file__).resolve().parents[1]
+PLAN = "course.toml"  # which assignments there are and will be
 ENVIRONMENT = "PHOTOGRAD_ASSIGNMENTS"  # a folder of assignments other than the built-in one
 
 
@@ -52,6 +54,7 @@ def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
         IoError, SceneError: its files are wrong.
     """
     places = _places(root)
+    require_ready(id_or_name, list(places), root)
     name = match_folder(id_or_name, list(places))
     place = places[name]
     if (place / "kit").is_dir():  # a wheel's
@@ -60,6 +63,42 @@ def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
         files, public = kit_files(place), public_files(place)
     bundle = bundle_of(public, name)
     return Kit(bundle.manifest, files, bundle)
+
+
+def require_ready(id_or_name: str, folders: list[str], root: Path | None = None) -> None:
+    """Refuse an assignment that the course plans and does not have yet.
+
+    Args:
+        id_or_name: as for `find_kit`.
+        folders: names of those that are ready.
+        root: a folder of assignments, or None.
+
+    Raises:
+        RangeError: it is planned.
+    """
+    for entry in _plan(root):
+        number, title = str(entry.get("id", "")), str(entry.get("title", ""))
+        is_ready = any(folder.startswith(f"{number}_") for folder in folders)
+        if not is_ready and id_or_name in {number, number.lstrip("0")}:
+            ready = ", ".join(folder.partition("_")[0] for folder in folders)
+            raise RangeError(
+                message(
+                    "photograd course",
+                    "assignment",
+                    "one that is ready",
+                    f"{number}, {title}, which is planned",
+                    f"choose one of {ready}",
+                )
+            )
+
+
+def _plan(root: Path | None) -> list[Mapping[str, object]]:
+    """The assignments that the course plans, as its file names them; none where it has no file."""
+    for top in (root or source_root(), PACKAGE / "kits"):
+        if top is not None and (top / PLAN).is_file():
+            entries = read_toml(top / PLAN).get("assignment", [])
+            return [entry for entry in entries if isinstance(entry, dict)]
+    return []
 
 
 def match_folder(id_or_name: str, folders: list[str]) -> str:
@@ -73,7 +112,8 @@ def match_folder(id_or_name: str, folders: list[str]) -> str:
         if id_or_name in {folder, name, number, str(int(number))}:
             return folder
     remedy = choose_from(id_or_name, folders) if folders else "none is there"
-    raise RangeError(message("find_kit", "assignment", "one that exists", repr(id_or_name), remedy))
+    expected = "one that exists"
+    raise RangeError(message("photograd course", "assignment", expected, repr(id_or_name), remedy))
 
 
 def source_folders(root: Path | None = None) -> dict[str, Path]:

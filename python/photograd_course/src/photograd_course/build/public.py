@@ -18,7 +18,8 @@ from .page.page import handout_page
 from .regions import strip_solution
 from .toml_text import tables, toml_key
 
-SECRET_KEYS = ("answer", "because")  # of questions
+SECRET_KEYS = ("answer", "because", "where")  # of questions
+GLOSSARY = "glossary.toml"  # of the course, beside the assignments
 PAGE = "handout.html"  # of the kit: README.md as a page
 COPIED = ("figures/*.png", "data/*")  # into the kit as they are
 
@@ -116,8 +117,8 @@ def wheel_kits(folder: Path, *, pages: bool = False) -> dict[str, bytes]:
 
 
 def glossary(root: Path) -> dict[str, str]:
-    """Words of the course and the sentence that explains each, from `glossary.toml`."""
-    path = root / "glossary.toml"
+    """Words of the course and the sentence that explains each."""
+    path = root / GLOSSARY
     return {k: str(v) for k, v in read_toml(path)["words"].items()} if path.exists() else {}
 
 

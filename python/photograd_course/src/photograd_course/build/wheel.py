@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..errors import IoError, message
 from .archive import zip_bytes
-from .kits import PACKAGE, source_folders
+from .kits import PACKAGE, PLAN, source_folders
 from .public import wheel_kits
 
 DISTRIBUTION = "photograd-course"
@@ -50,6 +50,9 @@ def package_files() -> dict[str, bytes]:
         for path in sorted(PACKAGE.rglob("*"))
         if _belongs(path, has_sources=bool(sources))
     }
+    for folder in list(sources.values())[:1]:
+        if (plan := folder.parent / PLAN).exists():
+            files[f"photograd_course/kits/{PLAN}"] = plan.read_bytes()
     for name, folder in sources.items():
         for inside, data in wheel_kits(folder).items():
             files[f"photograd_course/kits/{name}/{inside}"] = data

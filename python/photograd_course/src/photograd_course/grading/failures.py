@@ -28,6 +28,10 @@ class CheckFailed(Exception):
         return self.text
 
 
+class WrongForm(CheckFailed):
+    """The answer is of another kind, shape or dtype: its values, and hints, come later."""
+
+
 class TooExpensive(CheckFailed):
     """The answer is right, at a price that no written adjoint has."""
 

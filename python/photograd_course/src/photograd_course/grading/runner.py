@@ -9,7 +9,14 @@ from typing import Any
 
 from .battery import run_battery
 from .check import Check
-from .failures import CheckFailed, GraderFault, MachineTooBusy, StudentFailure, TooExpensive
+from .failures import (
+    CheckFailed,
+    GraderFault,
+    MachineTooBusy,
+    StudentFailure,
+    TooExpensive,
+    WrongForm,
+)
 from .hints import find_hint
 from .outcome import Outcome, Status
 from .trial import Student, Trial
@@ -182,7 +189,8 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
         hint = find_hint(setting.hints, setting.salt, check.id, failure)
         advice = str(failure.details.pop("advice", ""))
         reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
-        verdict = _Verdict(Status.FAILED, reason, failure.text, hint or advice or check.hint)
+        general = "" if isinstance(failure, WrongForm) else check.hint
+        verdict = _Verdict(Status.FAILED, reason, failure.text, hint or advice or general)
         verdict.details.update(failure.details)
         verdict.arrays = failure.arrays
         if failure.fingerprint is not None:

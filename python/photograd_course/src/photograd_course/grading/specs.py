@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..worker.codec import INTEGER_BITS
-from .failures import CheckFailed
+from .failures import CheckFailed, WrongForm
 
 
 class Spec(Protocol):
@@ -43,9 +43,9 @@ class Array:
         if not isinstance(value, np.ndarray):
             raise _wrong_kind(where, want, value)
         if not self._fits(value.shape):
-            raise CheckFailed(f"{where}: expected {want}, got shape {value.shape}")
+            raise WrongForm(f"{where}: expected {want}, got shape {value.shape}")
         if value.dtype != np.dtype(_FULL[self.dtype]):
-            raise CheckFailed(f"{where}: expected {want}, got dtype {value.dtype}")
+            raise WrongForm(f"{where}: expected {want}, got dtype {value.dtype}")
         if self.finite and value.dtype.kind == "f" and not np.isfinite(value).all():
             index = tuple(int(i) for i in np.argwhere(~np.isfinite(value))[0])
             count = int((~np.isfinite(value)).sum())
@@ -142,7 +142,7 @@ class Items:
         if not isinstance(value, list):
             raise _wrong_kind(where, f"a tuple of {len(self.parts)}", value)
         if len(value) != len(self.parts):
-            raise CheckFailed(f"{where}: expected {len(self.parts)} values, got {len(value)}")
+            raise WrongForm(f"{where}: expected {len(self.parts)} values, got {len(value)}")
         for part, name, item in zip(self.parts, self.names, value, strict=True):
             part.require(item, f"{where}, {name}")
 
@@ -158,7 +158,7 @@ class Record:
         if not isinstance(value, dict):
             raise _wrong_kind(where, f"a dict with the keys {sorted(self.parts)}", value)
         if set(value) != set(self.parts):
-            raise CheckFailed(f"{where}: expected the keys {sorted(self.parts)}")
+            raise WrongForm(f"{where}: expected the keys {sorted(self.parts)}")
         for key, part in self.parts.items():
             part.require(value[key], f"{where}[{key!r}]")
 
@@ -202,7 +202,7 @@ def _or_infinity(finite: bool) -> str:
     return "" if finite else ", or infinity"
 
 
-def _wrong_kind(where: str, want: str, value: Any) -> CheckFailed:
+def _wrong_kind(where: str, want: str, value: Any) -> WrongForm:
     kind = "None" if value is None else type(value).__name__
     hint = " (does a return statement lack?)" if value is None else ""
-    return CheckFailed(f"{where}: expected {want}, got {kind}{hint}")
+    return WrongForm(f"{where}: expected {want}, got {kind}{hint}")

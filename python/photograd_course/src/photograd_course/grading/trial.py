@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..worker.codec import encode, round_trip
 from ..worker.layouts import without_functions
-from .failures import CheckFailed, GraderFault, StudentFailure
+from .failures import CheckFailed, GraderFault, StudentFailure, WrongForm
 from .specs import Spec
 from .tolerance import Tolerance
 
@@ -215,7 +215,7 @@ class Trial:
         if not np.isfinite(right).all():
             raise GraderFault(f"{self.check.id}: {what}: the expected value is not finite")
         if answer.shape != right.shape:
-            raise CheckFailed(f"{what}: expected shape {right.shape}, got {answer.shape}")
+            raise WrongForm(f"{what}: expected shape {right.shape}, got {answer.shape}")
         if right.size == 0:
             raise GraderFault(f"{self.check.id}: {what}: compares nothing")
         scale = max(float(np.linalg.norm(right)), bound.floor)

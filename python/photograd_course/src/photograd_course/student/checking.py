@@ -41,23 +41,40 @@ def check_here(
     bundle: Bundle,
     files: Mapping[str, bytes],
     checks: Sequence[Check],
-    on_outcome: Callable[[Outcome], None] | None = None,
+    on_outcome: Callable[[Outcome, str], None] | None = None,
 ) -> list[Outcome]:
-    """Run `checks` on a submission of this machine's user. The verdict is indicative only."""
+    """Run `checks` on a submission of this machine's user. The verdict is indicative only.
+
+    Args:
+        bundle: the public one.
+        files: of the submission.
+        checks: those to run.
+        on_outcome: called after each with what the submission has printed meanwhile. Nothing is
+            read from it: verdicts rest on the frames of another pipe.
+    """
     hand = replace(bundle.hand(files), adjoints=adjoint_functions(checks))
     with scratch_folder() as scratch:
         home = install_program(Path(scratch))
+        workers: list[WorkerProcess] = []
+
+        def tell(outcome: Outcome) -> None:
+            if on_outcome is not None:
+                on_outcome(outcome, "".join(worker.last_words() for worker in workers))
+            workers.clear()
 
         def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
             worker = WorkerProcess(plain_command(home), environment=_environment(), cwd=home)
+            workers.append(worker)
             worker.request("start", {}, seconds=START_SECONDS)
             return RemoteStudent(worker, replace(hand, substitutes=dict(substitutes)))
 
-        return run_checks(checks, bundle.setting, open_student, on_outcome=on_outcome)
+        return run_checks(checks, bundle.setting, open_student, on_outcome=tell)
 
 
 def _environment() -> dict[str, str]:
     """What Python needs to start, and nothing that steers it; one thread for linear algebra."""
     needed = ("PATH", "SYSTEMROOT", "TEMP", "TMP", "HOME", "LANG", "LD_LIBRARY_PATH")
     kept = {name: os.environ[name] for name in needed if name in os.environ}
-    return {**kept, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+    one = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    # Unbuffered, since a worker is ended and does not end: nothing printed is lost.
+    return {**kept, **one, "PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"}

@@ -24,7 +24,7 @@ from .checking import check_here, select
 from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
-from .terminal import print_outcome, print_rest, print_summary
+from .terminal import print_outcome, print_printed, print_rest, print_summary
 
 
 def run_check_command(
@@ -46,8 +46,10 @@ def run_check_command(
     require_brought(bundle.manifest, files)
     lock_predictions(bundle, folder, console)
 
-    def show(outcome: Outcome) -> None:
+    def show(outcome: Outcome, printed: str) -> None:
         print_outcome(outcome, console, bundle.manifest)
+        if outcome.status is not Status.PASSED or task is not None:
+            print_printed(printed, console)
         remove_picture(outcome, folder.path)
         if pictures and (path := draw_failure(outcome, folder.path)) is not None:
             console.print(f"    picture: {path.name}", soft_wrap=True)

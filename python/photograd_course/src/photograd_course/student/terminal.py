@@ -11,6 +11,7 @@ from rich.text import Text
 from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
 from ..grading.outcome import Outcome, Status
+from ..printable import printable
 
 # Sign and color: the sign alone says it, for readers who do not see the color.
 MARKS = {
@@ -20,6 +21,7 @@ MARKS = {
     Status.ERROR_OURS: ("!", "magenta"),
 }
 # What a stub raises; see `build.regions`.
+MOST_LINES, LONGEST_LINE = 20, 200  # of what is printed
 STUB = re.compile(r"(\d\d)\.\d+ (\w+): see the handout, section \d+")
 
 
@@ -41,6 +43,16 @@ def print_outcome(outcome: Outcome, console: Console, manifest: Manifest | None 
     for line in lines:
         for part in str(line).splitlines()[:6]:
             console.print(Text(f"    {part}"), soft_wrap=True)
+
+
+def print_printed(text: str, console: Console) -> None:
+    """What the submission has printed, its first lines: each behind a bar, as no verdict stands."""
+    lines = text.splitlines()
+    for line in lines[:MOST_LINES]:
+        console.print(Text(f"    | {printable(line, LONGEST_LINE)}", style="dim"), soft_wrap=True)
+    if len(lines) > MOST_LINES:
+        more = f"    | ... and {len(lines) - MOST_LINES} more lines that it printed"
+        console.print(Text(more, style="dim"), soft_wrap=True)
 
 
 def said_of(said: str, manifest: Manifest) -> str:

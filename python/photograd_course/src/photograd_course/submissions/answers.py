@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from ..assignment.bundle import Bundle
 from ..assignment.drawing import draw
 from ..assignment.questions import LETTERS, Question, flat_answers
 from ..errors import IoError, SceneError
+from ..printable import printable
 from ..student.folder import LOCK_NAME
 from ..student.predictions import locked_answers
 from ..toml_limits import parse_toml
-from .printable import printable
 from .submission import OTHER_BYTES, Submission
 
 MISSING = object()
@@ -48,6 +48,9 @@ class Answered:
 def score_answers(bundle: Bundle, submission: Submission) -> tuple[list[Answered], str, list[str]]:
     """Every question of the assignment, none missing.
 
+    A locked prediction cannot be changed any more, so it is answered at once: right or wrong, why,
+    and where the handout says so. The other questions are answered where the bundle is closed.
+
     Args:
         bundle: with keys.
         submission: of a student.
@@ -78,6 +81,11 @@ def score_answers(bundle: Bundle, submission: Submission) -> tuple[list[Answered
             results.append(_choice(question, answer))
         else:
             results.append(_number(bundle, question, answer, (student, source)))
+    if bundle.closed:
+        results = [
+            each if each.kind == "prediction" else replace(each, text=_said(each.text, question))
+            for each, question in zip(results, bundle.questions, strict=True)
+        ]
     return results, student, warnings
 
 
@@ -115,7 +123,24 @@ def _prediction(question: Question, answer: Any, locked: Mapping[str, str]) -> A
     if answer is not MISSING and answer != "" and _letter(question, answer) != letter:
         said = f"answers.toml differs from the locked prediction ({letter})"
         return _result(question, "failed", said, answer)
-    return _result(question, "passed", "predicted and locked", letter)
+    return _result(question, "passed", _answer_to(question, letter), letter)
+
+
+def _answer_to(question: Question, letter: str) -> str:
+    """What is said of a prediction: whether it was right, and why. It has its points anyway."""
+    if not isinstance(question.answer, str) or question.answer not in [*LETTERS]:
+        return "predicted and locked"
+    right = letter == question.answer
+    option = question.options[LETTERS.index(question.answer)]
+    found = "right" if right else f"it turned out otherwise: {question.answer}) {option}"
+    return _said(f"predicted and locked; {found}", question)
+
+
+def _said(text: str, question: Question) -> str:
+    """A sentence, and after it why the answer is right and where the handout says so."""
+    where = f"see {question.where}" if question.where else ""
+    because = " ".join(question.because.split()).removesuffix(".")
+    return ". ".join(part for part in (text, because, where) if part)
 
 
 def _choice(question: Question, answer: Any) -> Answered:

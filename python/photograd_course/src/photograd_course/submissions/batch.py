@@ -10,11 +10,11 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 
 from ..assignment.bundle import Bundle
+from ..printable import csv_cell
 from .exports import Source
 from .grades_csv import Change, changes, changes_table, grades_table
 from .load import Loaded
 from .one import Case, grade_guarded, grade_one
-from .printable import csv_cell
 from .report import Report
 from .run_folder import RunFolder
 from .similarity import similar_pairs

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from ..cli.output import print_json
-from .printable import printable
+from ..printable import printable
 from .report_json import canonical
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..grading.outcome import Status
-from .printable import csv_cell, file_name
+from ..printable import csv_cell, file_name
 from .report import Report
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ..assignment.manifest import Manifest
-from .printable import printable
+from ..printable import printable
 from .submission import Refused, Submission, finish, refused, size_limit, wanted_names
 
 MOST_ENTRIES = 5000

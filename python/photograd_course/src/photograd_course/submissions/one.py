@@ -21,8 +21,8 @@ from ..grading.outcome import Outcome, Status
 from ..grading.remote import RemoteStudent
 from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
+from ..printable import printable
 from .answers import Answered, all_answered, plain_answers, score_answers
-from .printable import printable
 from .report import Report, staff_notes, versions
 from .submission import Submission
 from .workers import Budget, Clocked, Workers

@@ -16,9 +16,9 @@ from ..assignment.bundle import Bundle
 from ..atomic_io import atomic_write
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
+from ..printable import markdown
 from .answers import Answered
 from .disclosure import STAFF_TEXT, for_student
-from .printable import markdown
 from .report import Report
 
 VISIBILITY = {"public": "visible", "hidden": "after_published", "secret": "hidden"}

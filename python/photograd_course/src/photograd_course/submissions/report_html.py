@@ -9,9 +9,9 @@ import html
 import math
 
 from ..grading.outcome import Outcome, Status
+from ..printable import printable
 from .answers import Answered
 from .disclosure import STAFF_TEXT, for_student
-from .printable import printable
 from .report import Report
 
 WORDS = {

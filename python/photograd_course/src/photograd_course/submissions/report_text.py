@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.text import Text
 
 from ..grading.outcome import Outcome
+from ..printable import printable
 from ..student.terminal import print_outcome
-from .printable import printable
 from .report import Report
 
 

@@ -7,8 +7,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from ..assignment.manifest import Manifest
+from ..printable import printable
 from ..student.folder import LOCK_NAME
-from .printable import printable
 
 SOURCE_BYTES = 200 << 10  # no program of a course written by hand is longer
 OTHER_BYTES = 64 << 10

@@ -110,7 +110,9 @@ class WorkerProcess:
         self._log = bytearray()
         self._number = 0
         self._functions: dict[int, Callable[..., Any]] = {}
-        for target in (self._read_frames, self._read_log, self._watch):
+        self._log_reader = threading.Thread(target=self._read_log, daemon=True)
+        self._log_reader.start()
+        for target in (self._read_frames, self._watch):
             threading.Thread(target=target, daemon=True).start()
 
     @property
@@ -122,6 +124,11 @@ class WorkerProcess:
     def log(self) -> str:
         """What the worker wrote to stdout and stderr, cut short."""
         return bytes(self._log).decode("utf-8", errors="replace")
+
+    def last_words(self) -> str:
+        """The log of a worker that was ended, once all of it has been read."""
+        self._log_reader.join(LAST_WORDS)
+        return self.log
 
     def measure(self, clock: Clock) -> None:
         """Count time by this clock from now on; before, by the wall clock."""

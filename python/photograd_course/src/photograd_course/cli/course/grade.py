@@ -42,6 +42,10 @@ def register(course: typer.Typer) -> None:
             Path | None, typer.Option(help="Folder for grades.csv, pages and records.")
         ] = None,
         mode: Annotated[str | None, typer.Option(help="Only this isolation mode, A to E.")] = None,
+        closed: Annotated[
+            bool,
+            typer.Option("--closed", help="After the due date: reports explain every question."),
+        ] = False,
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
@@ -55,7 +59,7 @@ def register(course: typer.Typer) -> None:
         from ...submissions.command import Request, grade_command
 
         request = Request(
-            assignment, submission, bundle, secret_file, jobs, resume, out, mode, as_json
+            assignment, submission, bundle, secret_file, jobs, resume, out, mode, as_json, closed
         )
         if not grade_command(request):
             raise typer.Exit(3)

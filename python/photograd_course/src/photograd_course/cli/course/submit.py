@@ -32,6 +32,7 @@ def register(course: typer.Typer) -> None:
         """Pack the files that count into a zip archive, and say what is still open."""
         from ...build.kits import find_kit
         from ...student.folder import find_folder
+        from ...student.next_steps import next_steps
         from ...student.packing import pack
         from ...student.sheet import notes_before_submission
         from ..output import emit, note
@@ -46,14 +47,17 @@ def register(course: typer.Typer) -> None:
         notes = notes_before_submission(bundle, work)
         for text in notes:
             note(text, style="yellow")
+        result: dict[str, object] = {"notes": len(notes)} if notes or as_json else {}
         emit(
             {
                 "archive": target,
                 "student": work.answers()[0],
                 "files": " ".join(sorted(files)),
-                "notes": len(notes),
+                **result,
                 "sha256": digest,
             },
             as_json=as_json,
             title=f"Submission of {bundle.manifest.id}",
         )
+        for line in next_steps(bundle, target.name):
+            note(line)

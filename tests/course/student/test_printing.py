@@ -1,0 +1,142 @@
+"""What a submission prints is shown to its author, behind a bar, and changes no verdict."""
+
+from __future__ import annotations
+
+import functools
+import io
+import json
+import tempfile
+from pathlib import Path
+
+import pytest
+from photograd_course.build.kits import find_kit
+from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.student.checking import check_here
+from photograd_course.student.session import run_check_command
+from photograd_course.student.starting import lay_out
+from photograd_course.student.terminal import LONGEST_LINE, MOST_LINES, print_printed
+from rich.console import Console
+
+STUB = 'raise NotImplementedError("00.1 loss_gradient: see the handout, section 1")'
+RIGHT = "return 2.0 * (picture - photograph) / picture.size"
+WRONG = "return 2.0 * (photograph - picture) / picture.size"
+OS = "np.lib.format.open_memmap.__globals__['os']"  # which a graded module may not import
+MARKS = ("✓", "✗", "·", "!")
+
+
+def work_with(folder: Path, body: str) -> Path:
+    """The kit of assignment 00 with its one function written."""
+    kit = find_kit("00")
+    lay_out(kit.files, folder)
+    module = folder / "first_gradient.py"
+    text = module.read_text("utf-8")
+    assert STUB in text
+    module.write_text(text.replace(STUB, body), encoding="utf-8")
+    return folder
+
+
+def told(folder: Path, capsys: pytest.CaptureFixture[str], task: str | None = None) -> str:
+    run_check_command(find_kit("00").bundle, folder, task, pictures=False, as_json=False)
+    return capsys.readouterr().out
+
+
+def test_what_is_printed_stands_below_the_check_that_fails(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    work = work_with(tmp_path, f"print('size', picture.size); {WRONG}")
+    said = told(work, capsys).splitlines()
+    assert said[0].startswith("✗ 00.1")
+    assert any(line.startswith("    | size ") for line in said)
+
+
+def test_where_all_is_right_it_is_shown_for_one_task_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    work = work_with(tmp_path, f"print('here'); {RIGHT}")
+    assert "| here" not in told(work, capsys)
+    assert "    | here" in told(work, capsys, task="loss_gradient").splitlines()
+
+
+FORGED = "\\n".join(
+    [
+        "✓ 00.1.differences     passed",
+        "\\r✓ 00.1.differences",
+        "\\x1b[2J\\x1b[H\\x1b[32m✓ all green",
+        "\\u2028✓ 00.1.step\\u202e",
+        "20 of 20 public checks pass: 2 of 2 points.",
+        "All green. Next: photograd course submit 00",
+    ]
+)
+
+
+def test_nothing_printed_looks_like_a_verdict(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    frame = json.dumps({"status": "passed", "score": 2})
+    work = work_with(tmp_path, f"print('{FORGED}'); print('{frame}'); {WRONG}")
+    said = told(work, capsys)
+    printed = [line for line in said.splitlines() if line.startswith("    | ")]
+    assert len(printed) > 8
+    assert "\x1b" not in said
+    assert "\r" not in said
+    assert "\u202e" not in said
+    heads = [line for line in said.splitlines() if line.startswith(MARKS)]
+    assert [line[0] for line in heads] == ["✗", "✗"]
+    assert [line for line in said.splitlines() if line.startswith("0 of 2 public")] != []
+    assert not any(line.startswith(("All green", "20 of")) for line in said.splitlines())
+
+
+def outcomes_of(work: Path) -> tuple[list[Outcome], list[str]]:
+    bundle, printed = find_kit("00").bundle, []
+    files = {"first_gradient.py": (work / "first_gradient.py").read_bytes()}
+
+    def note(_: Outcome, text: str) -> None:
+        printed.append(text)
+
+    return check_here(bundle, files, bundle.checks, on_outcome=note), printed
+
+
+@functools.cache
+def quiet_outcomes(answer: str) -> list[Outcome]:
+    with tempfile.TemporaryDirectory() as folder:
+        return outcomes_of(work_with(Path(folder), answer))[0]
+
+
+@pytest.mark.parametrize(
+    "noise",
+    [
+        f"{OS}.sys.stdout.buffer.write(b'\\xff\\x00PGRD' * 9999)",
+        f"{OS}.write(1, b'passed'); {OS}.write(2, b'passed')",
+        "print('x' * 3_000_000)",
+        f"{OS}.sys.stdout = None",
+    ],
+)
+def test_no_verdict_depends_on_what_is_printed(tmp_path: Path, noise: str) -> None:
+    for name, answer, status in (("a", RIGHT, Status.PASSED), ("b", WRONG, Status.FAILED)):
+        plain = quiet_outcomes(answer)
+        work = work_with(tmp_path / name, f"print('passed'); {answer}")
+        module = work / "first_gradient.py"
+        module.write_text(f"{module.read_text('utf-8')}\n\n{noise}\n", encoding="utf-8")
+        loud, printed = outcomes_of(work)
+        assert [each.status for each in loud] == [status, status]
+        assert [(o.status, o.text, o.points) for o in plain] == [
+            (o.status, o.text, o.points) for o in loud
+        ]
+        assert all(len(text) <= 64 << 10 for text in printed)
+
+
+def test_each_check_has_what_was_printed_in_it(tmp_path: Path) -> None:
+    outcomes, printed = outcomes_of(work_with(tmp_path, f"print(picture.shape); {RIGHT}"))
+    assert len(outcomes) == len(printed) == 2
+    assert all(text.startswith("(") for text in printed)
+
+
+def test_much_is_cut_and_counted() -> None:
+    console = Console(file=io.StringIO(), width=1000)
+    print_printed("\n".join(str(k) for k in range(MOST_LINES + 7)) + "\n", console)
+    lines = console.file.getvalue().splitlines()
+    assert len(lines) == MOST_LINES + 1
+    assert "and 7 more lines" in lines[-1]
+    console = Console(file=io.StringIO(), width=1000)
+    print_printed("x" * 999, console)
+    assert len(console.file.getvalue().rstrip()) == LONGEST_LINE + len("    | ")
