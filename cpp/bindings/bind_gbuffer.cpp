@@ -94,6 +94,27 @@ void light(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArray
     });
 }
 
+void light_parallel(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
+                    const py::array& wi, const py::array& irradiance, const py::array& visible,
+                    py::array out) {
+    dispatch_real("light_gbuffer_parallel", "parameters", rows.parameters,
+                  [&](auto real, ArrayArgs& args) {
+                      using R = decltype(real);
+                      const SceneNumbers<R> numbers(args, rows);
+                      const GBuffer<R> in = gbuffer_of<R>(args, gbuffer);
+                      const R* direction = args.in<R>("wi", wi, "D 3");
+                      const R* arriving = args.in<R>("irradiance", irradiance, "D 3");
+                      const R* part = args.in<R>("visible", visible, "N");
+                      R* to = args.out<R>("out", out, "N 3");
+                      const std::int64_t count = args.size("N"), directions = args.size("D");
+                      check_materials(args, numbers, in);
+                      const Vec3<R> from{R(eye[0]), R(eye[1]), R(eye[2])};
+                      const py::gil_scoped_release release;
+                      light_gbuffer_parallel(numbers.scene, from, count, in, directions, direction,
+                                             arriving, part, to);
+                  });
+}
+
 void sample(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
             const py::array& u, py::array wi, py::array weight, py::array pdf) {
     dispatch_real("sample_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
@@ -138,6 +159,9 @@ void bind_gbuffer(py::module_& m) {
               "-1 sees nothing.");
         m.def("light_gbuffer", of_scene(&light), scene..., py::arg("eye"), py::arg("gbuffer"),
               py::arg("wi"), py::arg("irradiance"), py::arg("out"), "Adds to out (N, 3).");
+        m.def("light_gbuffer_parallel", of_scene(&light_parallel), scene..., py::arg("eye"),
+              py::arg("gbuffer"), py::arg("wi"), py::arg("irradiance"), py::arg("visible"),
+              py::arg("out"), "Adds to out (N, 3).");
         m.def("sample_gbuffer", of_scene(&sample), scene..., py::arg("eye"), py::arg("gbuffer"),
               py::arg("u"), py::arg("wi"), py::arg("weight"), py::arg("pdf"),
               "weight (N, 3) is f cos / pdf; pdf (N,) is 0 of specular surfaces.");

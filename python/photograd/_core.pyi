@@ -82,6 +82,7 @@ __all__: list[str] = [
     "interpolate",
     "interpolate_backward",
     "light_gbuffer",
+    "light_gbuffer_parallel",
     "lights",
     "log1p_unit",
     "march",
@@ -1719,6 +1720,29 @@ def light_gbuffer(
     gbuffer: collections.abc.Mapping[str, numpy.ndarray],
     wi: numpy.ndarray,
     irradiance: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Adds to out (N, 3).
+    """
+
+def light_gbuffer_parallel(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    eye: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    gbuffer: collections.abc.Mapping[str, numpy.ndarray],
+    wi: numpy.ndarray,
+    irradiance: numpy.ndarray,
+    visible: numpy.ndarray,
     out: numpy.ndarray,
 ) -> None:
     """

@@ -22,6 +22,7 @@ from photograd.frame import (
 )
 from photograd.frame.against import compare_with_paths
 from photograd.transport import Material, Scene
+from photograd.transport.builtin import builtin_scene
 from photograd.transport.scene import Environment
 from photograd.transport.shapes import rectangle
 
@@ -200,3 +201,23 @@ def test_mistakes_are_named() -> None:
         sample_reflectance(ready, shown, np.full((64, 96, 3), 1.0))
     with pytest.raises(DtypeError, match="ScreenRaySettings: steps"):
         ScreenRaySettings(steps=1.5)  # type: ignore[arg-type]
+
+
+def test_the_sky_in_smooth_metal_is_that_of_paths() -> None:
+    """Balls of clay and copper under a low sun: directions of the sky alone show as spots."""
+    scene = builtin_scene("evening", 64)
+    shapes = tuple(shape for shape in scene.shapes if shape.material != "glass")
+    scene = replace(scene, shapes=shapes)
+    errors = []
+    for samples in (0, 8):
+        options = FrameOptions(
+            sky_directions=96,
+            sky_visibility="shadow_maps",
+            supersampling=2,
+            shadows=ShadowSettings(size=512),
+            gather_samples=samples,
+        )
+        (found,) = compare_with_paths(scene, options, spp=128, max_depth=2)
+        errors.append(found.rms)
+    assert errors[1] < 0.025
+    assert errors[0] > 2 * errors[1]

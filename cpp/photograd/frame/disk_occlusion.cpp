@@ -90,10 +90,10 @@ template <Real R>
 void DiskTree::look_up(const double* parts, double opening, double radius, std::int64_t count,
                        const R* points, const R* normals, R* visible) const {
     const std::vector<double> means = mean_parts(parts);
-    const auto hidden = [&](const Vec3<double>& point, const Vec3<double>& normal) {
+    const auto hidden = [&](const Vec3<double>& point, const Vec3<double>& normal,
+                            std::vector<std::int32_t>& rest) {
         double sum = 0.0;
         std::size_t at = 0;
-        std::vector<std::int32_t> rest;
         while (true) {
             const Node& node = nodes_[at];
             const Vec3<double> away = node.center - point;
@@ -121,13 +121,14 @@ void DiskTree::look_up(const double* parts, double opening, double radius, std::
         }
     };
     for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
+        std::vector<std::int32_t> rest;  // empty before and after each point
         for (std::int64_t i = first; i < last; ++i) {
             const Vec3<double> point{double(points[3 * i]), double(points[3 * i + 1]),
                                      double(points[3 * i + 2])};
             const Vec3<double> normal{double(normals[3 * i]), double(normals[3 * i + 1]),
                                       double(normals[3 * i + 2])};
             const bool dark = nodes_.empty() || dot(normal, normal) == 0.0;
-            visible[i] = dark ? R(1) : R(std::max(0.0, 1.0 - hidden(point, normal)));
+            visible[i] = dark ? R(1) : R(std::max(0.0, 1.0 - hidden(point, normal, rest)));
         }
     });
 }

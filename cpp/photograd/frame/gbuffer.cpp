@@ -132,6 +132,21 @@ void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t c
 }
 
 template <Real R>
+void light_gbuffer_parallel(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                            const GBuffer<R>& in, std::int64_t directions, const R* wi,
+                            const R* irradiance, const R* visible, R* out) {
+    const auto lit = [&](std::int64_t i) { return visible[i] != R(0); };
+    for_surfaces(scene, eye, count, in, lit,
+                 [&](std::int64_t i, const Material<R>& material, const SurfaceSide<R>& side) {
+                     Vec3<R> sum(R(0));
+                     for (std::int64_t k = 0; k < directions; ++k)
+                         sum +=
+                             reflected(material, side, vector_at(wi, k)) * vector_at(irradiance, k);
+                     put(out, i, vector_at(out, i) + sum * visible[i]);
+                 });
+}
+
+template <Real R>
 void sample_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
                     const GBuffer<R>& in, const R* u, R* wi, R* weight, R* pdf) {
     std::fill_n(wi, 3 * count, R(0));
@@ -167,6 +182,13 @@ template void light_gbuffer(const PathScene<float>&, const Vec3<float>&, std::in
                             const GBuffer<float>&, const float*, const float*, float*);
 template void light_gbuffer(const PathScene<double>&, const Vec3<double>&, std::int64_t,
                             const GBuffer<double>&, const double*, const double*, double*);
+
+template void light_gbuffer_parallel(const PathScene<float>&, const Vec3<float>&, std::int64_t,
+                                     const GBuffer<float>&, std::int64_t, const float*,
+                                     const float*, const float*, float*);
+template void light_gbuffer_parallel(const PathScene<double>&, const Vec3<double>&, std::int64_t,
+                                     const GBuffer<double>&, std::int64_t, const double*,
+                                     const double*, const double*, double*);
 
 template void sample_gbuffer(const PathScene<float>&, const Vec3<float>&, std::int64_t,
                              const GBuffer<float>&, const float*, float*, float*, float*);

@@ -31,6 +31,13 @@ template <Real R>
 void light_gbuffer(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
                    const GBuffer<R>& in, const R* wi, const R* irradiance, R* out);
 
+/// The same of parallel light that all surfaces see alike, from each of the directions wi (D, 3)
+/// with its irradiance (D, 3), times the part `visible` (N,) of all of it.
+template <Real R>
+void light_gbuffer_parallel(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t count,
+                            const GBuffer<R>& in, std::int64_t directions, const R* wi,
+                            const R* irradiance, const R* visible, R* out);
+
 /// Directions that the reflectance of the surfaces would choose, from u (N, 3): wi (N, 3), weight
 /// f cos / pdf (N, 3), and pdf (N,), per steradian, 0 of specular surfaces. Weight 0 where a sample
 /// fails.

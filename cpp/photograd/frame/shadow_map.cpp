@@ -41,6 +41,7 @@ void shadow_lookup(std::span<const ShadowView> views, const ShadowFilter& filter
             const Vec3<double> point(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
             const Vec3<double> normal(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
             visibility[i] = R(1);
+            if (normal == Vec3<double>(0.0)) continue;  // no surface
             for (const ShadowView& view : views) {
                 const Vec3<double> q = pixels_of(view, point);
                 if (!is_inside(q, filter.size)) continue;

@@ -26,7 +26,8 @@ struct ShadowFilter {
     double texel;        // width of a texel at a depth of 1 m, meters
 };
 
-/// visibility (N) from 0 to 1 of points (N, 3) with unit normals (N, 3); 1 outside of all views.
+/// visibility (N) from 0 to 1 of points (N, 3) with unit normals (N, 3); 1 outside of all views,
+/// and where the normal is 0.
 template <Real R>
 void shadow_lookup(std::span<const ShadowView> views, const ShadowFilter& filter,
                    std::int64_t count, const R* points, const R* normals, R* visibility);

@@ -58,7 +58,10 @@ public:
         const Tap tap = tap_of(i);
         const InverseDepth<R> at = InverseDepth<R>::at(frame_, tap.x, tap.y);
         if (!(at.value > R(0))) return R(0);
-        return obscurance(frame_.ray(tap.x, tap.y) * (R(1) / at.value) - point_, normal_, by());
+        const Vec3<R> v = frame_.ray(tap.x, tap.y) * (R(1) / at.value) - point_;
+        // Below the surface: most points, and all that a bias of at least 0 leaves out as well.
+        if (!(dot(v, normal_) > R(0))) return R(0);
+        return obscurance(v, normal_, by());
     }
     /// Adds to d, all but the strength.
     void sample_backward(int i, R d_a, SsaoSettings<R>& d) const {

@@ -14,10 +14,11 @@ from photograd.frame.bloom import bloom, bloom_backward
 from photograd.frame.depth_of_field import circle_of_confusion, depth_of_field
 from photograd.frame.detail import SceneDetail
 from photograd.frame.disks import Disks, scene_disks
+from photograd.frame.display_tuning import TunedBloom, TunedToneCurve, tune_bloom, tune_tone_curve
 from photograd.frame.dithering import dither
 from photograd.frame.fog import add_fog
 from photograd.frame.gathering import gather, reflectance_pdf, sample_reflectance
-from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer, reflect
+from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer, reflect, reflect_parallel
 from photograd.frame.graph import FrameResult, Pass, PassGraph
 from photograd.frame.horizon import HorizonSettings, horizon_occlusion
 from photograd.frame.lens_effects import chromatic_aberration, vignette
@@ -61,7 +62,9 @@ __all__ = [
     "ShadowSettings",
     "SsaoSettings",
     "TemporalAntialiasing",
+    "TunedBloom",
     "TunedOcclusion",
+    "TunedToneCurve",
     "add_fog",
     "background",
     "blend_nearest_first",
@@ -88,6 +91,7 @@ __all__ = [
     "meshlets",
     "motion_blur",
     "reflect",
+    "reflect_parallel",
     "reflectance_pdf",
     "sample_reflectance",
     "scene_disks",
@@ -98,7 +102,9 @@ __all__ = [
     "tone_map",
     "tone_map_backward",
     "traced_occlusion",
+    "tune_bloom",
     "tune_occlusion",
+    "tune_tone_curve",
     "velocity",
     "vignette",
 ]

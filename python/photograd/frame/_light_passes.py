@@ -116,19 +116,21 @@ class LightPasses:
         def visible(wi: Array) -> Array:
             return nearest_shadow(surfaces, wi, self.sky, shadows, self.options.shadows)
 
+        light = direct + sky_light if self.options.gather_frame else np.zeros_like(direct)
         return gather(
             self.scene,
             surfaces,
-            direct + sky_light,
+            light,
             self.options.screen_rays,
             samples=self.options.gather_samples,
             sky_directions=self.options.sky_directions,
             sky_visibility=visible if with_maps and self.sky else None,
         )
 
-    def background(self, camera: Camera) -> Array:
-        """Radiance behind everything."""
-        return background(self.scene.scene, camera).astype(self.scene.dtype)
+    def background(self, camera: Camera, surfaces: GBuffer) -> Array:
+        """Radiance behind everything, where no surface is."""
+        found = background(self.scene.scene, camera, surfaces.covered)
+        return found.astype(self.scene.dtype)
 
     def opaque(
         self, surfaces: GBuffer, direct: Array, sky_light: Array, gathered: Array, behind: Array

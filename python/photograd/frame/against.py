@@ -83,22 +83,28 @@ def compare_with_paths(
     """
     view = scene.camera if camera is None else camera
     found = []
-    for technique, lit, depth in _techniques(scene, max_depth):
+    for technique, lit, depth in kinds_of_light(scene, max_depth):
         if report is not None:
             report(technique)
-        frame = frame_graph(FrameScene(lit), options).run({"camera": view}, ["radiance"])
+        graph = frame_graph(FrameScene(lit), options_for(options, depth))
+        frame = graph.run({"camera": view}, ["radiance"])
         sums = PathTracer(lit, allow_incomplete=True).render(
             spp=spp, seed=seed, options=PathOptions(max_depth=depth), camera=view
         )
         noise = sums.noise if spp > 1 else float("nan")
-        shown = [_displayed(each, options) for each in (frame["radiance"], sums.mean)]
+        shown = [displayed(each, options) for each in (frame["radiance"], sums.mean)]
         spent = sum(frame.milliseconds.values())
         found.append(Comparison(technique, shown[0], shown[1], spent, noise))
     return found
 
 
-def _techniques(scene: Scene, max_depth: int) -> list[tuple[str, Scene, int]]:
-    """(name, the scene with this light alone, segments of the paths)."""
+def kinds_of_light(scene: Scene, max_depth: int) -> list[tuple[str, Scene, int]]:
+    """(name, the scene with this light alone, segments of the paths), as for a comparison.
+
+    Args:
+        scene: whose light is compared.
+        max_depth: segments of the paths of all light.
+    """
     sky = tuple(infinite_lights(scene).values())
     nearby = tuple(light for light in scene.lights if light not in sky)
     black = tuple(replace(shape, emission=np.zeros(3)) for shape in scene.shapes)
@@ -114,5 +120,21 @@ def _techniques(scene: Scene, max_depth: int) -> list[tuple[str, Scene, int]]:
     return found
 
 
-def _displayed(radiance: Array, options: FrameOptions) -> Array:
+def options_for(options: FrameOptions, max_depth: int) -> FrameOptions:
+    """Options of a frame that is compared with paths of so many segments.
+
+    Args:
+        options: of the frame; with two segments, it gathers no light that was sent on before.
+        max_depth: segments of the paths.
+    """
+    return replace(options, gather_frame=options.gather_frame and max_depth > 2)
+
+
+def displayed(radiance: Array, options: FrameOptions) -> Array:
+    """Radiance (H, W, 3) as a display shows it, encoded, 0 to 1.
+
+    Args:
+        radiance: of at least 0.
+        options: of which exposure and tone curve count.
+    """
     return srgb_encode(np.clip(show(radiance, options), 0.0, 1.0))

@@ -189,6 +189,34 @@ def reflect(
     )
 
 
+def reflect_parallel(
+    scene: FrameScene, surfaces: GBuffer, wi: Array, irradiance: Array, visible: Array, onto: Array
+) -> None:
+    """Add what the surfaces send to the viewer of parallel light, in place.
+
+    Args:
+        scene: of the surfaces.
+        surfaces: of a G-buffer.
+        wi: (D, 3) unit vectors towards the lights, in the world.
+        irradiance: (D, 3) of a surface that faces each, W/m^2.
+        visible: (H, W) the part of all of them that arrives.
+        onto: (H, W, 3) radiance, of the scene's dtype; visible times the sum is added.
+
+    Raises:
+        DtypeError, ShapeError: arrays of other types or sizes.
+    """
+    call = Arguments("reflect_parallel", scene.dtype)
+    size = (surfaces.camera.height, surfaces.camera.width)
+    call.run(
+        _core.light_gbuffer_parallel,
+        **surfaces.core_arguments(scene),
+        wi=call.array("wi", wi, ("D", 3)),
+        irradiance=call.array("irradiance", irradiance, ("D", 3)),
+        visible=call.array("visible", visible, size).reshape(-1),
+        out=onto.reshape(-1, 3),
+    )
+
+
 def _widest(scene: FrameScene) -> int:
     """Numbers of the longest row of parameters."""
     materials = scene.scene.materials.values()

@@ -37,9 +37,18 @@ GOLDEN_SECTION = 0.6180339887498949
 
 
 class FrameLight(ABC):
-    """Light that reaches each point from one direction."""
+    """Light that reaches each point from one direction.
+
+    Attributes:
+        name: of its own.
+    """
 
     name: str
+
+    @property
+    def is_parallel(self) -> bool:
+        """Whether all points see the same light from the same direction."""
+        return False
 
     @abstractmethod
     def arriving(self, points: Array) -> tuple[Array, Array]:
@@ -65,6 +74,11 @@ class DeltaFrameLight(FrameLight):
 
     name: str
     light: Light
+
+    @property
+    def is_parallel(self) -> bool:
+        """Of directions alone."""
+        return isinstance(self.light, DirectionalLight)
 
     def arriving(self, points: Array) -> tuple[Array, Array]:
         """As the path tracer asks it."""
@@ -165,17 +179,21 @@ def infinite_lights(scene: Scene) -> dict[str, Light]:
     return found
 
 
-def background(scene: Scene, camera: Camera) -> Array:
+def background(scene: Scene, camera: Camera, hidden: Array | None = None) -> Array:
     """Radiance (H, W, 3) of the lights at infinity, as a camera sees them, float64.
 
     Args:
         scene: whose lights and environment are looked at.
         camera: of the picture.
+        hidden: (H, W) bool, where it is not looked for, and 0; None looks everywhere.
     """
-    origins, directions = camera.rays()
-    sky = np.zeros_like(directions)
-    for light in infinite_lights(scene).values():
-        sky += light.L(origins, directions)
+    sky = np.zeros((camera.height * camera.width, 3))
+    lights = infinite_lights(scene).values()
+    open_pixels = np.arange(len(sky)) if hidden is None else np.flatnonzero(~hidden)
+    if lights and len(open_pixels):
+        origins, directions = camera.rays(open_pixels)
+        for light in lights:
+            sky[open_pixels] += light.L(origins, directions)
     return sky.reshape(camera.height, camera.width, 3)
 
 

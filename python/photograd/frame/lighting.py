@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from photograd.capture.camera import Camera
-from photograd.frame.gbuffer import GBuffer, draw_surfaces, reflect
+from photograd.frame.gbuffer import GBuffer, draw_surfaces, reflect, reflect_parallel
 from photograd.frame.light_views import FrameLight
 from photograd.frame.scene import FrameScene
 from photograd.frame.shadows import ShadowMap, ShadowSettings, draw_shadow_map, look_up_shadow
@@ -54,16 +54,33 @@ def light_surfaces(
     visible = surfaces.covered.reshape(-1)
     points = surfaces.position.reshape(-1, 3)
     normals = surfaces.normal.reshape(-1, 3)
+    part = visible.astype(scene.dtype)
+    if visibility is not None:
+        part *= visibility.reshape(-1)
+    alike = [light for light in lights if light.is_parallel and light.name not in shadows]
+    if alike:
+        reflect_parallel(scene, surfaces, *_parallel(alike, scene), part.reshape(size[:2]), out)
     for light in lights:
-        wi, irradiance = light.arriving(points)
+        if light in alike:
+            continue
+        lit = part
         if light.name in shadows:
-            lit = look_up_shadow(shadows[light.name], points, normals, settings)
-            irradiance = irradiance * lit[:, None]
-        if visibility is not None:
-            irradiance = irradiance * visibility.reshape(-1, 1)
-        irradiance = np.where(visible[:, None], irradiance, 0)
+            lit = lit * look_up_shadow(shadows[light.name], points, normals, settings)
+        if light.is_parallel:
+            by = _parallel([light], scene)
+            reflect_parallel(scene, surfaces, *by, lit.reshape(size[:2]), out)
+            continue
+        wi, irradiance = light.arriving(points)
+        irradiance = irradiance * lit[:, None]
         reflect(scene, surfaces, wi.reshape(size), irradiance.reshape(size), out)
     return out
+
+
+def _parallel(lights: Sequence[FrameLight], scene: FrameScene) -> tuple[Array, Array]:
+    """Directions (D, 3), and irradiance of what faces them (D, 3)."""
+    anywhere = np.zeros((1, 3), scene.dtype)
+    found = [light.arriving(anywhere) for light in lights]
+    return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
 
 
 def light_forward(

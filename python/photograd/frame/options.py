@@ -45,6 +45,7 @@ class FrameOptions:
         screen_rays: of all rays in screen space.
         gather_samples: directions a pixel in which the reflectance looks for light that the frame
             shows, or for the sky behind it: screen-space irradiance and reflections. 0 for none.
+        gather_frame: whether light that the frame shows is gathered; if not, the sky alone.
         transparency: how surfaces that cover a part are blended: "peeled", exactly, "sorted" by
             shapes, or "weighted", in any order.
         layers: of such surfaces; what lies behind further ones is left out.
@@ -80,6 +81,7 @@ class FrameOptions:
     disk_edge: float = 0.1
     screen_rays: ScreenRaySettings = field(default_factory=ScreenRaySettings)
     gather_samples: int = 0
+    gather_frame: bool = True
     transparency: Transparency = "peeled"
     layers: int = 8
     fog: float = 0.0

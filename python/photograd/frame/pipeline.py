@@ -14,7 +14,7 @@ Buffers, in the order in which they are made:
     direct          light of points, spots, directions and surfaces that emit
     sky_light       light of the sky, of environment maps and suns
     gathered        light that surfaces reflect of the frame, and of the sky behind it
-    background      radiance behind everything
+    background      radiance behind everything, where no surface is
     opaque          all of these
     layered         with surfaces before it that cover in part
     fogged          seen through fog
@@ -69,7 +69,7 @@ def _lit(light: LightPasses, post: PostPasses, inputs: tuple[str, ...]) -> list[
         Pass("direct", light.direct, (*surfaces, "shadows"), ("direct",)),
         Pass("sky light", light.sky_light, ("gbuffer", "shadows", "occlusion"), ("sky_light",)),
         Pass("gather", light.gather, ("gbuffer", "direct", "sky_light", "shadows"), ("gathered",)),
-        Pass("background", light.background, ("samples",), ("background",)),
+        Pass("background", light.background, ("samples", "gbuffer"), ("background",)),
         Pass("opaque", light.opaque, sums, ("opaque",)),
         Pass("layers", light.layers, ("samples", "visibility", "opaque", "shadows"), ("layered",)),
     ]
