@@ -1,7 +1,7 @@
 """Gaussians as glTF with KHR_gaussian_splatting, read back with pygltflib.
 
 SplatTransform 2.7.1 writes the same numbers from the same .ply file, but for half a turn about the
-vertical axis: of biker.ply scales, opacities and coefficients to the bit.
+vertical axis: of biker.ply scales, opacities and coefficients of degree 0 to the bit.
 """
 
 from __future__ import annotations

@@ -70,9 +70,12 @@ def view(
 
     Pictures are rendered here, a quarter of the resolution while the camera moves, then all of it;
     scenes go on with more samples. There are layers for depth and opacity, a slider for the steps
-    of a fit, and frusta for photographs. It needs no network: pip install 'photograd[viewer]'.
+    of a fit, and frusta for photographs. It needs the package viser (the extra "viewer"), and no
+    network.
 
     Example: photograd view model
+
+    Example: photograd view cornell-box
     """
     use_threads(threads)
     check_up(up)
