@@ -22,7 +22,7 @@ from photograd.capture.view import View
 from photograd.fields import MeshSurface, TexturedSurface
 from photograd.fields.layered_picture import Unwrapped
 from photograd.fields.lit_surface import lit
-from photograd.fields.surface import Surface
+from photograd.fields.surface import SurfaceField
 from photograd.fitting import Fit, Model, options_for
 from photograd.fitting.drawing import display_field
 from photograd.fitting.evaluate import evaluate, render_camera
@@ -84,7 +84,7 @@ def photographed(model: Model, cameras: list[Any], first: int) -> tuple[View, ..
     return tuple(views)
 
 
-def samples(surface: Surface) -> Array:
+def samples(surface: SurfaceField) -> Array:
     """(N, 3) points on a mesh, evenly by area."""
     corners = surface.vertices[surface.faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -97,7 +97,7 @@ def samples(surface: Surface) -> Array:
     return found
 
 
-def chamfer(a: Surface, b: Surface) -> float:
+def chamfer(a: SurfaceField, b: SurfaceField) -> float:
     """Mean distance of points on each of two meshes from the other mesh, millimeters."""
     there = nearest_on_mesh(samples(a), b.mesh)[0].mean()
     back = nearest_on_mesh(samples(b), a.mesh)[0].mean()
@@ -164,7 +164,7 @@ def textured_recovery() -> list[str]:
     return rows
 
 
-def photographs(truth: Surface) -> Capture:
+def photographs(truth: SurfaceField) -> Capture:
     """60 training views all around, and 8 that are held out."""
     box = truth.box + np.array([[-0.15], [0.15]])
     train = spiral_cameras(box, VIEWS, size=SIZE)

@@ -54,7 +54,8 @@ class FitOptions:
         importance: samples of a ray that a nerf places by importance; 0 places all evenly.
         final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
         ssim_weight: share of 1 - SSIM in the loss of whole pictures.
-        laplacian, normal_consistency: weights of priors on the shape of a mesh; 0 switches one off.
+        laplacian: weight that keeps the vertices of a mesh near the mean of their neighbors.
+        normal_consistency: weight that keeps the normals of neighboring faces of a mesh alike.
         remesh: whether a mesh gets new triangles of equal size at `refine_at`.
         opacity: whether the opacity of a mesh's texels is recovered, too.
     """

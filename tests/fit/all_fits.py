@@ -38,6 +38,7 @@ JOBS: dict[str, dict[str, Any]] = {
     "gaussian_codes": {"steps": 4},
     "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
     "mesh": {"resolution": 8, "steps": 8},
+    "textured_surface": {"resolution": 16, "steps": 6, "opacity": True, "laplacian": 0.1},
 }
 
 

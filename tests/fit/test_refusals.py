@@ -22,7 +22,7 @@ from tests.fit import scene
     ("name", "words"),
     [
         ("dense_gird", r"a capture can start: .*, got 'dense_gird' .*mean 'dense_grid'"),
-        ("zebra", r"'sparse_sh' or 'textured_mesh', got 'zebra'$"),
+        ("zebra", r"'textured_mesh' or 'textured_surface', got 'zebra'$"),
         ("gaussian", r"got 'gaussian' \(did you mean 'gaussians'\?\)$"),
         ("texture_2d", r"got 'texture_2d' \(it lives on a 2D canvas\)"),
         (
@@ -30,7 +30,7 @@ from tests.fit import scene
             "one that a capture can start: "
             "'dense_grid' or 'dense_sh' or 'gaussian_codes' or 'gaussians' or 'hash_grid' or "
             "'leaf_codes' or 'leaf_mlps' or 'mesh' or 'nerf' or 'octree_sh' or 'plenoctree' or "
-            "'sparse_sh' or 'textured_mesh', "
+            "'sparse_sh' or 'textured_mesh' or 'textured_surface', "
             "got 'tiny_network'",
         ),
     ],

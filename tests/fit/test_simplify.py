@@ -135,7 +135,7 @@ def test_what_cannot_be_simplified_is_refused() -> None:
         SimplifyOptions(8, opacity=True)
     with pytest.raises(RangeError, match="size"):
         SimplifyOptions(8, size=4)
-    with pytest.raises(DtypeError, match="a Surface"):
+    with pytest.raises(DtypeError, match="a SurfaceField"):
         simplify(icosphere(2), FEW)  # type: ignore[arg-type]
     with pytest.raises(RangeError, match="faces"):
         decimate(np.eye(3), np.array([[0, 1, 7]] * 5), 4)

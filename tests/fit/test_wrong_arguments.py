@@ -150,7 +150,7 @@ CALLS: dict[str, tuple[Callable[[], Any], type[Error], str]] = {
     "unknown representation": (
         lambda: photograd.fit("photos", "sky", steps=3),
         RangeError,
-        r"^Fit: representation: expected .*'dense_grid'.*'textured_mesh', got 'sky'$",
+        r"^Fit: representation: expected .*'dense_grid'.*'textured_surface', got 'sky'$",
     ),
     "path of a capture": (
         lambda: Fit.start("photos", FitOptions()),  # type: ignore[arg-type]

@@ -25,6 +25,13 @@ from photograd._fit_options import BACKGROUNDS, DECODES, DENSITY_CONTROLS, MAX_D
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.fit_image import fit_picture, is_picture
+from photograd.commands.fit_mesh import (
+    LaplacianOption,
+    NormalConsistencyOption,
+    OpacityOption,
+    RemeshOption,
+    read_mesh_for,
+)
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
@@ -34,8 +41,8 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
-from photograd.errors import RangeError, SceneError, message
-from photograd.fields import MeshSurface, TexturedMesh, TexturedSurface, fittable
+from photograd.errors import RangeError, message
+from photograd.fields import TexturedMesh, fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.freeze import learn_freeze_refine
@@ -48,13 +55,7 @@ from photograd.fitting.options import (
     summary,
     users_of,
 )
-from photograd.representation import Fittable
 from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
-from photograd.transport.mesh_files import (
-    read_mesh_surface,
-    read_textured_mesh,
-    read_textured_surface,
-)
 
 
 def _defaults(option: str) -> str:
@@ -142,33 +143,6 @@ ImportanceOption: TypeAlias = Annotated[
         "--importance",
         min=0,
         help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
-    ),
-]
-LaplacianOption: TypeAlias = Annotated[
-    float,
-    typer.Option(
-        "--laplacian",
-        min=0.0,
-        help=f"Weight that keeps the vertices of {_users('laplacian')} near their neighbors' mean.",
-    ),
-]
-NormalConsistencyOption: TypeAlias = Annotated[
-    float,
-    typer.Option(
-        "--normal-consistency",
-        min=0.0,
-        help=f"Weight that keeps normals of neighboring faces of {_users('laplacian')} alike.",
-    ),
-]
-OpacityOption: TypeAlias = Annotated[
-    bool, typer.Option("--opacity", help=f"Recover the opacity of a {_users('opacity')}, too.")
-]
-RemeshOption: TypeAlias = Annotated[
-    bool,
-    typer.Option(
-        "--remesh",
-        help=f"New triangles of equal size for a {_users('remesh')}, at 15 and 40 % of the steps; "
-        "needs gpytoolbox.",
     ),
 ]
 StartFromOption: TypeAlias = Annotated[
@@ -293,17 +267,33 @@ def fit(
     else:
         given = [field.name for field in fields(FitOptions) if is_given(context, field.name)]
         refuse_without_effect(representation, given, prefix="--")
-        chosen: dict[str, Any] = {"steps": steps, "resolution": resolution}
-        chosen |= {"rays": rays, "seed": seed}
+        chosen: dict[str, Any] = {"steps": steps, "resolution": resolution, "seed": seed}
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control, "decode": decode}
-        chosen |= {"importance": importance, "opacity": opacity}
-        chosen |= {"remesh": remesh}
+        chosen |= {"importance": importance, "rays": rays, "opacity": opacity, "remesh": remesh}
         chosen |= {"laplacian": laplacian, "normal_consistency": normal_consistency}
         options = options_for(representation, **chosen)
         first = first_model(start_from, representation) if start_from else None
         job = _start(loaded, options, first, allow_blind=allow_blind)
+    run_and_emit(job, out, checkpoint_seconds, freeze=freeze, as_json=as_json)
+
+
+def run_and_emit(
+    job: Fit, out: Path, checkpoint_seconds: float, *, freeze: bool, as_json: bool
+) -> None:
+    """Run a fit, write what it leaves, and say how it went.
+
+    Args:
+        job: the fit.
+        out: its folder.
+        checkpoint_seconds: between two checkpoints.
+        freeze: as for `run_and_score`.
+        as_json: whether the report is one line of JSON.
+
+    Raises:
+        typer.Exit: it was stopped.
+    """
     with stop_on_signals() as stopping:
         result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
     emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")
@@ -347,28 +337,10 @@ def first_model(path: Path, representation: str = TexturedMesh.name) -> Model:
         return load_model(path)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        field = _MESH_READERS.get(representation, read_textured_mesh)(path)
+        field = read_mesh_for(representation, path)
     for warning in caught:
         note(f"{warning.message}")
     return Model.of(field)
-
-
-def _textured_or_plain(path: Path) -> Fittable:
-    """A mesh with its texture; without one, a mesh with texture coordinates; or without these."""
-    try:
-        return read_textured_surface(path)
-    except (SceneError, RangeError):
-        pass
-    try:
-        return read_textured_mesh(path)
-    except (SceneError, RangeError):
-        return read_mesh_surface(path)
-
-
-_MESH_READERS: dict[str, Callable[[Path], Fittable]] = {
-    MeshSurface.name: read_mesh_surface,
-    TexturedSurface.name: _textured_or_plain,
-}
 
 
 def exported(job: Fit, out: Path) -> dict[str, str]:

@@ -15,7 +15,7 @@ from photograd.commands.shared import out_option, stop_on_signals, use_threads
 from photograd.errors import RangeError, SceneError, message
 from photograd.fields.lit_surface import lit
 from photograd.fields.mesh_surface import MeshSurface
-from photograd.fields.surface import Surface
+from photograd.fields.surface import SurfaceField
 from photograd.fitting.simplify import SimplifyOptions, simplify
 from photograd.transport.mesh_files import SUFFIXES, read_mesh_surface, read_textured_surface
 
@@ -109,7 +109,7 @@ def simplify_mesh(
         raise typer.Exit(stopping.exit_code or 1)
 
 
-def dense_mesh(path: Path) -> Surface:
+def dense_mesh(path: Path) -> SurfaceField:
     """A mesh file with its texture, or gray under a light; what is left out is said on stderr.
 
     Args:
@@ -121,7 +121,7 @@ def dense_mesh(path: Path) -> Surface:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            found: Surface = read_textured_surface(path)
+            found: SurfaceField = read_textured_surface(path)
         except (SceneError, RangeError):
             caught.clear()
             found = lit(read_mesh_surface(path))

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd.fields.layered_picture import Unwrapped
-from photograd.fields.surface import Surface
+from photograd.fields.surface import SurfaceField
 from photograd.geometry.mesh import Bvh, Hits, Mesh
 from photograd.geometry.normals import vertex_normals
 from photograd.raster import interpolate, rasterize
@@ -23,7 +23,9 @@ REACH = 0.1
 """How far a ray looks, in extents of the mesh."""
 
 
-def baked(vertices: FloatArray, unwrapped: Unwrapped, size: int, source: Surface) -> FloatArray:
+def baked(
+    vertices: FloatArray, unwrapped: Unwrapped, size: int, source: SurfaceField
+) -> FloatArray:
     """A texture (size, size, 4) of display color and opacity, straight.
 
     Args:
@@ -33,14 +35,14 @@ def baked(vertices: FloatArray, unwrapped: Unwrapped, size: int, source: Surface
         source: the other mesh.
     """
     flat = np.concatenate([size * unwrapped.uv, np.ones((len(unwrapped.uv), 1))], axis=1)
-    seen = rasterize(flat, unwrapped.corners, (size, size))
-    covered = seen.covered
+    visibility = rasterize(flat, unwrapped.corners, (size, size))
+    covered = visibility.covered
     rgba = np.full((size, size, 4), 0.5)
     rgba[..., 3] = 1.0
     if not covered.any():
         return rgba
     attributes = np.concatenate([vertices, vertex_normals(vertices, unwrapped.faces)], axis=1)
-    at = interpolate(attributes[unwrapped.vertex], unwrapped.corners, seen)[covered]
+    at = interpolate(attributes[unwrapped.vertex], unwrapped.corners, visibility)[covered]
     colors, found = colors_nearby(at[:, :3], at[:, 3:], source)
     rgba[covered] = colors
     known = np.zeros((size, size), bool)
@@ -70,7 +72,7 @@ def spread(rgba: FloatArray, known: Array) -> FloatArray:
 
 
 def colors_nearby(
-    points: FloatArray, normals: FloatArray, source: Surface
+    points: FloatArray, normals: FloatArray, source: SurfaceField
 ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
     """What a mesh shows (N, 4) where it is nearest along or against a normal; 0 where it is not.
 

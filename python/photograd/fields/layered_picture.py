@@ -60,12 +60,12 @@ from photograd.types import Array, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Unwrapped:
-    """Faces whose corners have places in a texture, and which of these lie at one vertex.
+    """Faces whose corners have texture coordinates, and the vertices that these belong to.
 
     Attributes:
-        uv: (T, 2) places in [0, 1], v downwards.
-        corners: (F, 3) numbers of places.
-        vertex: (T,) the vertex at each place; several places of one are a seam.
+        uv: (T, 2) texture coordinates in [0, 1], v downwards.
+        corners: (F, 3) numbers of texture coordinates.
+        vertex: (T,) the vertex that has them; one with several lies on a seam.
     """
 
     uv: FloatArray
@@ -168,15 +168,19 @@ class LayeredPicture:
         return cls(below, *drawn, tuple(reversed(layers)))
 
     def cotangent(self, d_outputs: Outputs) -> FloatArray:
-        """dL/d `image`, as `picture_cotangent` has it."""
+        """dL/d `image`, as `picture_cotangent` has it.
+
+        Args:
+            d_outputs: dL/d outputs of the pixels.
+        """
         height, width = self.image.shape[:2]
         return picture_cotangent(d_outputs, height, width)
 
     @property
     def shown(self) -> Array:
         """Numbers of the faces that pixels show, in any layer."""
-        seen = [layer.visibility for layer in self.layers]
-        return np.unique(np.concatenate([each.face[each.covered] for each in seen]))
+        layers = [layer.visibility for layer in self.layers]
+        return np.unique(np.concatenate([each.face[each.covered] for each in layers]))
 
     def position_gradients(self, d_image: FloatArray) -> LayeredGradients:
         """The parts of the adjoint.
@@ -219,18 +223,18 @@ class LayeredPicture:
         d_levels, d_uv, d_level = sample_mips_backward(self.mips, layer.uv, layer.level, d_texel)
         for k, part in enumerate(d_levels):
             d_mips[k] += part
-        d_place, d_footprints = np.zeros((*shown.shape, 2)), np.zeros((*shown.shape, 2, 2))
-        d_place[shown] = d_uv
+        d_uv_map, d_footprints = np.zeros((*shown.shape, 2)), np.zeros((*shown.shape, 2, 2))
+        d_uv_map[shown] = d_uv
         d_footprints[shown] = mip_level_backward(self.mips[0].shape, layer.footprint, d_level)
-        _, d_barycentrics = interpolate_backward(flat.uv, flat.corners, visibility, d_place)
+        _, d_barycentrics = interpolate_backward(flat.uv, flat.corners, visibility, d_uv_map)
         placed = self.positions[flat.vertex]
-        _, d_placed = footprints_backward(flat.uv, placed, flat.corners, visibility, d_footprints)
+        _, d_uv_mapd = footprints_backward(flat.uv, placed, flat.corners, visibility, d_footprints)
         d_depth = np.zeros(shown.shape)
         d_depth[shown] = layer.texel[:, 3] * g[:, 4]
         found: FloatArray = rasterize_backward(
             self.positions, flat.faces, visibility, d_barycentrics, d_depth
         )
-        return found + sums(flat.vertex.astype(np.int64), d_placed, len(found))
+        return found + sums(flat.vertex.astype(np.int64), d_uv_mapd, len(found))
 
 
 def _peeled(

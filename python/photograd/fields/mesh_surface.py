@@ -30,7 +30,7 @@ from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
 from photograd.fields.bake import colors_nearby
 from photograd.fields.surface import (
-    Surface,
+    SurfaceField,
     SurfacePolicy,
     manifold_edges,
     require_area,
@@ -66,7 +66,7 @@ class SurfaceContext:
 
 
 @register
-class MeshSurface(Surface):
+class MeshSurface(SurfaceField):
     """params["differential"] (V, 3) meters: u = (I + lambda L) x of the vertices x.
     params["color_logits"] (V, 3): the display color of a vertex is sigmoid of it.
 
@@ -79,7 +79,7 @@ class MeshSurface(Surface):
     """
 
     name: ClassVar[str] = "mesh"
-    fit_options: ClassVar[frozenset[str]] = Surface.fit_options | {"remesh"}
+    fit_options: ClassVar[frozenset[str]] = SurfaceField.fit_options | {"remesh"}
     counts: ClassVar[str] = "sphere"
     fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 16, "steps": 1000}
 
@@ -247,7 +247,7 @@ class MeshSurface(Surface):
             sphere = icosphere(start.options.resolution)
             vertices = (low + high) / 2 + (high - low) / 2 * sphere.vertices.astype(np.float64)
             field = cls.of_mesh(vertices, sphere.faces, options=start.options)
-        elif isinstance(first, Surface):
+        elif isinstance(first, SurfaceField):
             logits = first.color_logits()
             smoothness = first.policy.smoothness
             field = cls.of_mesh(

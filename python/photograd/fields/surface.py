@@ -63,7 +63,7 @@ class SurfacePolicy:
         return cls(smoothness, extent, *weights)
 
 
-class Surface(Fittable):
+class SurfaceField(Fittable):
     """params["differential"] (V, 3) meters: u = (I + lambda L) x of the vertices x.
 
     Attributes:

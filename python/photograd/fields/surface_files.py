@@ -31,7 +31,7 @@ def write_glowing_mesh(
         vertices: (V, 3) meters, written as float32.
         faces: (F, 3) vertex numbers.
         colors: (V, 3) linear, of the vertices.
-        uv: (V, 2) places in the texture, v downwards.
+        uv: (V, 2) texture coordinates, v downwards.
         pixels: (H, W, 3 or 4) bytes of the texture, sRGB; of four channels the last is opacity,
             which is blended.
 

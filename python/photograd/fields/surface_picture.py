@@ -118,7 +118,11 @@ class SurfacePicture:
         return cls(image, vertices, colors, faces, edges, *drawn)
 
     def cotangent(self, d_outputs: Outputs) -> FloatArray:
-        """dL/d `image`, as `picture_cotangent` has it."""
+        """dL/d `image`, as `picture_cotangent` has it.
+
+        Args:
+            d_outputs: dL/d outputs of the pixels.
+        """
         height, width = self.image.shape[:2]
         return picture_cotangent(d_outputs, height, width)
 

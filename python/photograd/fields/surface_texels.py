@@ -93,7 +93,7 @@ def parts_of(field: Fittable, size: int) -> tuple[FloatArray, Unwrapped, FloatAr
     raise RangeError(message("Fit.start", "start_from", "a model with a mesh", got))
 
 
-def checked_places(function: str, unwrapped: Unwrapped, count: int) -> Unwrapped:
+def checked_unwrapped(function: str, unwrapped: Unwrapped, count: int) -> Unwrapped:
     """Faces in a texture, their arrays in the types that the rasterizer takes.
 
     Args:
@@ -102,20 +102,14 @@ def checked_places(function: str, unwrapped: Unwrapped, count: int) -> Unwrapped
         count: number of vertices.
 
     Raises:
-        DtypeError, ShapeError, RangeError: other arrays, numbers that name nothing, places outside
-            of [0, 1].
+        DtypeError, ShapeError, RangeError: other arrays, numbers that name nothing, texture
+            coordinates outside of [0, 1].
     """
     call = Arguments(function, np.float64)
     uv = call.array("uv", unwrapped.uv, ("T", 2), low=0, high=1, min_length=1)
-    places, high = len(uv), count - 1
-    vertex = call.array("vertex", unwrapped.vertex, (places,), dtype=np.uint32, low=0, high=high)
+    rows, high = len(uv), count - 1
+    vertex = call.array("vertex", unwrapped.vertex, (rows,), dtype=np.uint32, low=0, high=high)
     corners = call.array(
-        "corners",
-        unwrapped.corners,
-        ("F", 3),
-        dtype=np.uint32,
-        low=0,
-        high=places - 1,
-        min_length=1,
+        "corners", unwrapped.corners, ("F", 3), dtype=np.uint32, low=0, high=rows - 1, min_length=1
     )
     return Unwrapped(uv, corners, vertex)

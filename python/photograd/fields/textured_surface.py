@@ -5,7 +5,7 @@
     texture = (a c, a), in mip maps              what is transparent has no color to leak
     image   = layers of faces, edges blended     `layered_picture` draws them
 
-The faces and their places in the texture are held. Without opacity a = 1, and one layer is all.
+The faces and their texture coordinates are held. Without opacity a = 1, and one layer is all.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
 from photograd.fields.layered_picture import LayeredPicture, Unwrapped
-from photograd.fields.surface import Surface, SurfacePolicy, manifold_edges, require_area
+from photograd.fields.surface import SurfaceField, SurfacePolicy, manifold_edges, require_area
 from photograd.fields.surface_files import UNLIT, write_glowing_mesh
 from photograd.fields.surface_texels import (
     START_OPACITY,
-    checked_places,
+    checked_unwrapped,
     is_opaque,
     parts_of,
     raw_texels,
@@ -86,7 +86,7 @@ class TextureContext:
 
 
 @register
-class TexturedSurface(Surface):
+class TexturedSurface(SurfaceField):
     """params["differential"] (V, 3) meters: u = (I + lambda L) x of the vertices x.
     params["texels"] (H, W, 4) raw: sigmoid makes display color and opacity of them; (H, W, 3) is
     opaque.
@@ -102,7 +102,7 @@ class TexturedSurface(Surface):
     """
 
     name: ClassVar[str] = "textured_surface"
-    fit_options: ClassVar[frozenset[str]] = Surface.fit_options | {"opacity"}
+    fit_options: ClassVar[frozenset[str]] = SurfaceField.fit_options | {"opacity"}
     counts: ClassVar[str] = "texture"
     fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 128, "steps": 1000}
     policy: TexturePolicy
@@ -124,7 +124,7 @@ class TexturedSurface(Surface):
 
         Raises:
             DtypeError, ShapeError, RangeError: arrays of other types or shapes, values that are
-                not finite, numbers that name nothing, places outside of [0, 1].
+                not finite, numbers that name nothing, coordinates outside of [0, 1].
             SceneError: a face with one vertex twice, or an edge of three faces or more.
         """
         call = Arguments("TexturedSurface")
@@ -134,7 +134,7 @@ class TexturedSurface(Surface):
             "texels", texels, ("H", "W", channels), dtype=differential.dtype, min_length=1
         )
         self.params = {"differential": differential, "texels": texels}
-        self.unwrapped = checked_places("TexturedSurface", unwrapped, len(differential))
+        self.unwrapped = checked_unwrapped("TexturedSurface", unwrapped, len(differential))
         self._hold(len(differential), self.unwrapped.faces, policy or TexturePolicy())
 
     @classmethod
@@ -164,7 +164,7 @@ class TexturedSurface(Surface):
         """
         call = Arguments("TexturedSurface.of_mesh", np.float64)
         vertices = call.array("vertices", vertices, ("V", 3), min_length=1)
-        unwrapped = checked_places("TexturedSurface.of_mesh", unwrapped, len(vertices))
+        unwrapped = checked_unwrapped("TexturedSurface.of_mesh", unwrapped, len(vertices))
         require_area("TexturedSurface.of_mesh", vertices, unwrapped.faces)
         policy = TexturePolicy.of(vertices, smoothness, options)
         steps = LargeSteps(manifold_edges(unwrapped.faces).ends, len(vertices), smoothness)
@@ -213,11 +213,11 @@ class TexturedSurface(Surface):
         return found
 
     def color_logits(self) -> Array:
-        """(V, 3) raw display colors of the vertices, of one of their places each."""
+        """(V, 3) raw display colors of the vertices, at one of their texture coordinates each."""
         flat = self.unwrapped
-        place = np.zeros(len(self.params["differential"]), np.int64)
-        place[flat.vertex] = np.arange(len(flat.vertex))
-        colors = sample(self.rgba(), flat.uv[place])[None]
+        row = np.zeros(len(self.params["differential"]), np.int64)
+        row[flat.vertex] = np.arange(len(flat.vertex))
+        colors = sample(self.rgba(), flat.uv[row])[None]
         found: Array = raw_texels(colors, None)[0]
         return found
 
@@ -302,7 +302,7 @@ class TexturedSurface(Surface):
         """
         first, options = start.field, start.options
         size = options.resolution
-        smoothness = first.policy.smoothness if isinstance(first, Surface) else SMOOTHNESS
+        smoothness = first.policy.smoothness if isinstance(first, SurfaceField) else SMOOTHNESS
         if first is None:
             low, high = start.bounds.box
             sphere, uv, corners, vertex = unwrapped_sphere(max(2, size // (2 * TEXELS_PER_EDGE)))

@@ -32,7 +32,7 @@ from photograd.errors import Error, RangeError, message
 from photograd.fields.bake import baked
 from photograd.fields.layered_picture import Unwrapped
 from photograd.fields.mesh_surface import MeshSurface
-from photograd.fields.surface import Surface
+from photograd.fields.surface import SurfaceField
 from photograd.fields.surface_texels import raw_texels
 from photograd.fields.textured_surface import TexturedSurface
 from photograd.fitting.data import TrainingView
@@ -129,8 +129,8 @@ class SimplifiedMesh:
         finished: whether all steps were done.
     """
 
-    surface: Surface
-    start: Surface
+    surface: SurfaceField
+    start: SurfaceField
     before: Likeness
     after: Likeness
     history: FloatArray
@@ -145,7 +145,7 @@ class Progress(descent.Progress):
 
 
 def simplify(
-    dense: Surface,
+    dense: SurfaceField,
     options: SimplifyOptions,
     *,
     bar: bool = False,
@@ -166,7 +166,7 @@ def simplify(
         IoError: the library of `decimate` or `unwrap` is not installed.
         Error: a loss that is not finite.
     """
-    require_instance("simplify", "dense", dense, Surface, "MeshSurface.of_mesh makes one")
+    require_instance("simplify", "dense", dense, SurfaceField, "MeshSurface.of_mesh makes one")
     require_instance("simplify", "options", options, SimplifyOptions)
     dense = dense.unsmoothed()
     start = decimated(dense, options.triangles, texture=options.texture, opacity=options.opacity)
@@ -188,8 +188,8 @@ def simplify(
 
 
 def decimated(
-    dense: Surface, triangles: int, *, texture: int = 0, opacity: bool = False
-) -> Surface:
+    dense: SurfaceField, triangles: int, *, texture: int = 0, opacity: bool = False
+) -> SurfaceField:
     """A decimation by quadric errors that shows what `dense` shows nearby.
 
     Args:
@@ -228,7 +228,7 @@ class Simplification:
         history: (step, loss, PSNR of its view in dB) of each.
     """
 
-    def __init__(self, dense: Surface, start: Surface, options: SimplifyOptions) -> None:
+    def __init__(self, dense: SurfaceField, start: SurfaceField, options: SimplifyOptions) -> None:
         """Draw the references.
 
         Args:
@@ -305,7 +305,7 @@ class Simplification:
         return rates | {"differential": fall * self._vertex_rate}
 
 
-def _views(surface: Surface, cameras: Sequence[Camera]) -> list[TrainingView]:
+def _views(surface: SurfaceField, cameras: Sequence[Camera]) -> list[TrainingView]:
     """What cameras see of a surface."""
     views = []
     for camera in cameras:
@@ -315,7 +315,7 @@ def _views(surface: Surface, cameras: Sequence[Camera]) -> list[TrainingView]:
     return views
 
 
-def likeness(surface: Surface, views: Sequence[TrainingView]) -> Likeness:
+def likeness(surface: SurfaceField, views: Sequence[TrainingView]) -> Likeness:
     """How like `views` of a mesh another one looks.
 
     Args:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from photograd_course.viz import style
 
 from photograd._notebook import EDGE, png_of_sheet, sheet
-from photograd.fields.surface import Surface
+from photograd.fields.surface import SurfaceField
 from photograd.fitting.data import TrainingView
 from photograd.fitting.gradient_drawings import draw_picture
 from photograd.fitting.loss import picture_loss, picture_loss_backward
@@ -60,7 +60,7 @@ class SurfaceGradients:
 
 
 def surface_gradients(
-    field: Surface, view: TrainingView, *, ssim_weight: float = 0.2
+    field: SurfaceField, view: TrainingView, *, ssim_weight: float = 0.2
 ) -> SurfaceGradients:
     """The gradient of the loss of one view, over white.
 

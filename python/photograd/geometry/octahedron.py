@@ -1,6 +1,6 @@
 """A sphere whose faces fill the whole square of a texture: an octahedron, folded open [Praun2003].
 
-A place (a, b) in [-1, 1]^2 with y = 1 - |a| - |b| lies on the octahedron at (a, y, b) if y >= 0,
+A point (a, b) of [-1, 1]^2 with y = 1 - |a| - |b| lies on the octahedron at (a, y, b) if y >= 0,
 else at ((1 - |b|) sgn a, y, (1 - |a|) sgn b). The two halves of each border of the square are one
 edge of the lower half, cut open.
 """
@@ -23,15 +23,15 @@ def unwrapped_sphere(divisions: int) -> tuple[FloatArray, FloatArray, Numbers, N
         divisions: n, of each edge of the octahedron, 2 to 4096.
 
     Returns:
-        Vertices (V, 3), places uv (T, 2) in [0, 1], faces (F, 3) as numbers of places, and the
-        vertex (T,) at each place.
+        Vertices (V, 3), texture coordinates uv (T, 2) in [0, 1], faces (F, 3) as numbers of these,
+        and the vertex (T,) that has them.
 
     Raises:
         DtypeError, RangeError: divisions out of range.
     """
     n = Arguments("unwrapped_sphere").integer("divisions", divisions, low=2, high=4096)
     row, column = (grid.reshape(-1) for grid in np.mgrid[-n : n + 1, -n : n + 1])
-    # Whole numbers, so that places of one vertex agree to the bit.
+    # Whole numbers, so that corners of one vertex agree to the bit.
     up = n - abs(column) - abs(row)
     x = np.where(up >= 0, column, (n - abs(row)) * np.sign(column))
     z = np.where(up >= 0, row, (n - abs(column)) * np.sign(row))
@@ -43,7 +43,7 @@ def unwrapped_sphere(divisions: int) -> tuple[FloatArray, FloatArray, Numbers, N
 
 
 def _triangles(n: int) -> Numbers:
-    """(F, 3) numbers of places; squares are cut along the edges of the octahedron."""
+    """(F, 3) numbers of texture coordinates; squares are cut along the edges of the octahedron."""
     row, column = (grid.reshape(-1) for grid in np.mgrid[0 : 2 * n, 0 : 2 * n])
     first = row * (2 * n + 1) + column
     a, b, c, d = first, first + 1, first + 2 * n + 2, first + 2 * n + 1

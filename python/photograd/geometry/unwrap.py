@@ -1,4 +1,4 @@
-"""Places of a mesh's faces in a texture; xatlas cuts it into charts and packs them."""
+"""Texture coordinates of a mesh; xatlas cuts it into charts and packs them."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def unwrap(vertices: Array, faces: Array, size: int) -> tuple[FloatArray, Number
         size: texels along an edge of the texture, which keeps charts apart.
 
     Returns:
-        Places uv (T, 2) in [0, 1], faces (F, 3) as numbers of places, and the vertex (T,) at each
-        place.
+        Texture coordinates uv (T, 2) in [0, 1], faces (F, 3) as numbers of these, and the vertex
+        (T,) that has them.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays or numbers that are no such thing.
@@ -44,5 +44,5 @@ def unwrap(vertices: Array, faces: Array, size: int) -> tuple[FloatArray, Number
     atlas.add_mesh(((vertices - center) / scale).astype(np.float32), faces)
     atlas.generate(library.ChartOptions(), options, False)
     vertex, corners, uv = atlas[0]
-    places = np.clip(np.asarray(uv, np.float64), 0.0, 1.0)
-    return places, np.asarray(corners, np.uint32), np.asarray(vertex, np.uint32)
+    clipped = np.clip(np.asarray(uv, np.float64), 0.0, 1.0)
+    return clipped, np.asarray(corners, np.uint32), np.asarray(vertex, np.uint32)
