@@ -17,7 +17,12 @@ COURSE = "python/photograd_course/"
 CORE = "python/photograd/"
 BUILD_HOOK = COURSE + "hatch_build.py"  # runs inside of the build backend, and is in no wheel
 # Where the name on the package index is not the name that is imported.
-IMPORT_NAMES = {"pillow": "PIL", "pyyaml": "yaml", "scikit-image": "skimage"}
+IMPORT_NAMES = {
+    "markdown-it-py": "markdown_it",
+    "pillow": "PIL",
+    "pyyaml": "yaml",
+    "scikit-image": "skimage",
+}
 
 
 def names(requirements: list[str]) -> set[str]:
