@@ -36,7 +36,7 @@ def deferred_and_forward(height, width, lit, open_sky):
 
 
 def tuned(height, width, start, steps):
-    """(settings, losses) of `tune_occlusion` for the scene, towards the traced sky."""
+    """(settings, losses) of `tune_occlusion` for the scene, toward the traced sky."""
     focal = frame.ZOOM * width
     gbuffer = frame.draw(frame.meshes(6), focal, frame.POSE, height, width)
     truth = frame.traced_surfaces(focal, frame.POSE, height, width)

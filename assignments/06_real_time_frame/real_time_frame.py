@@ -66,8 +66,8 @@ def pixel_block(triangle, height, width):
     """Given: the pixels whose centers a triangle (3, 3) may cover, a rectangle of the picture.
 
     Returns:
-        (block, px, py): slices of its rows and columns; x of its pixel centers (1, columns, 1) and
-        y (rows, 1, 1).
+        (block, px, py): slices of its rows and columns, empty off the picture; x of its pixel
+        centers (columns, 1) and y (rows, 1, 1).
     """
     low = np.clip(np.floor(triangle[:, :2].min(axis=0)), 0, [width, height]).astype(int)
     high = np.clip(np.ceil(triangle[:, :2].max(axis=0)), 0, [width, height]).astype(int)
@@ -115,13 +115,13 @@ def rasterize(corners: Corners, height: int, width: int) -> tuple[Faces, Weights
 def shadow_test(
     points: Points, normals: Points, depth: Depths, focal: float, pose: Pose, bias: float
 ) -> PerPoint:
-    """The part of the light that reaches points, by what a camera at the light sees.
+    """The fraction of the light that reaches points, by what a camera at the light sees.
 
     Args:
         points, normals: (N, 3), in the world; unit normals.
-        depth: (S, S), the shadow map: depths that the light's camera sees, infinite for none.
-        focal, pose: of the light's camera, before which all points lie.
-        bias: meters by which points are moved along their normals before the comparison.
+        depth: (T, T), the shadow map: depths that the light's camera sees, infinite for none.
+        focal, pose: of the light's camera; all points lie in front of it.
+        bias: b in meters, by which points are moved along their normals before the comparison.
 
     Returns:
         (N,), 0 to 1: the mean of nine comparisons, with the texel and its neighbors; where the map
@@ -145,7 +145,7 @@ def shadow_test(
 def local(normal, v):
     """Given: vectors (N, 3) in frames whose +z is the unit normal (N, 3), whatever their x and y.
 
-    Reflectance models of assignment 04 take their directions there.
+    Reflectance models of assignment 04 take their directions there. NaN where the normal is 0.
     """
     least = np.abs(normal).argmin(axis=1)
     x = np.cross(normal, np.eye(3)[least])
@@ -162,12 +162,12 @@ def light_surfaces(
     Args:
         gbuffer, lights: as the head of the module says.
         focal, pose: of the camera.
-        lit: (H, W), the part of the sun that reaches each pixel's surface.
-        open_sky: (H, W), the part of the sky that does.
+        lit: (H, W), the fraction of sunlight that reaches each pixel's surface.
+        open_sky: (H, W), the fraction of the sky that does.
 
     Returns:
-        (H, W, 4): radiance with premultiplied alpha, and alpha; 0 where nothing is seen. Handout
-        equations (12) to (15).
+        (H, W, 4): radiance with premultiplied alpha, and alpha; 0 where nothing is seen (there the
+        normal is 0: do not light it). Handout equations (12) to (15).
     """
     # >>> solution 06.3
     seen = np.isfinite(gbuffer["depth"])
@@ -193,13 +193,13 @@ def over(front, back):
 
 
 def bloom(radiance: Colors, threshold: float, sigma: float, strength: float) -> Colors:
-    """Spread a part of what is bright, as a lens does.
+    """Spread a fraction of what is bright, as a lens does.
 
     Args:
         radiance: (H, W, 3), linear.
         threshold: what a channel has above it is bright.
         sigma: of the Gaussian, in pixels, above 0.
-        strength: the part of the bright light that is spread, 0 to 1.
+        strength: the fraction of the bright light that is spread, 0 to 1.
 
     Returns:
         (H, W, 3); light spread beyond the border is lost. Handout equations (16) to (18).
@@ -225,9 +225,9 @@ def tone_map(
 
     Args:
         radiance: (H, W, 3), linear, 0 or more.
-        settings: (2,): the exposure in stops, and the luminance that is shown as 1.
-        d_shown: (H, W, 3), the derivative of some loss with respect to what is shown; zeros where
-            only that is wanted.
+        settings: (2,): the exposure e in stops, and `white`, the luminance that is shown as 1.
+        d_shown: (H, W, 3), g: the derivative of some loss with respect to what is shown; zeros
+            where only that is wanted.
 
     Returns:
         (shown, d_radiance, d_settings): what a display shows (H, W, 3), still linear; derivatives
@@ -271,9 +271,9 @@ def ambient_occlusion(
         normals: (H, W, 3), unit, in the camera's frame.
         focal: of the camera, in pixels.
         offsets: (H, W, S, 2), of the samples of each pixel, in units of REACH: x, y.
-        settings: (3,): radius in m, falloff and strength, all above 0.
-        d_open: (H, W), the derivative of some loss with respect to the result; zeros where only
-            that is wanted.
+        settings: (3,): radius r in meters, falloff k and strength m, all above 0.
+        d_open: (H, W), g: the derivative of some loss with respect to the result; zeros where
+            only that is wanted.
 
     Returns:
         (open_sky, d_settings): (H, W), 1 on planes and for sky, not limited from below; the
@@ -437,10 +437,10 @@ def sun_camera(to_sun, size):
 
 
 def sunlight(gbuffer, focal, pose, parts, size=512, texels=2.2):
-    """(H, W): the part of the sun that reaches each pixel, by your shadow map; 1 for sky.
+    """(H, W): the fraction of sunlight that reaches each pixel, by your shadow map; 1 for sky.
 
-    A bias of less than 2.2 texels is too small for some slopes: 1.5 sqrt(2) reach the corner of the
-    farthest of nine texels.
+    The bias is given in texels, each 2 HALF / size meters wide. Less than 2.2 is too small for some
+    slopes: 1.5 sqrt(2) reach the corner of the farthest of nine texels.
     """
     light = sun_camera(LIGHTS["to_sun"], size)
     corners = joined(parts)[0]
@@ -537,7 +537,7 @@ def traced_sunlight(gbuffer, focal, pose):
 
 
 def traced_sky(gbuffer, focal, pose, count=48):
-    """(H, W): the part of the sky that nothing nearer than REACH hides, by rays; 1 for sky."""
+    """(H, W): the fraction of the sky that nothing nearer than REACH hides, by rays; 1 for sky."""
     seen, points, normals = lifted(gbuffer, focal, pose)
     height = 1 - 2 * (np.arange(count) + 0.5) / count
     phi, ring = GOLDEN * np.arange(count), np.sqrt(1 - height**2)
@@ -556,7 +556,7 @@ def traced_sky(gbuffer, focal, pose, count=48):
 
 
 def lit_frame(gbuffer, bubbles, focal, pose, lit, open_sky):
-    """Radiance (H, W, 3): surfaces before the sky, and bubbles that are nearer before both."""
+    """Radiance (H, W, 3): surfaces in front of the sky, and nearer bubbles over both."""
     shape = gbuffer["depth"].shape
     base = light_surfaces(gbuffer, focal, pose, LIGHTS, lit, np.clip(open_sky, 0.0, 1.0))
     depth = np.where(bubbles["depth"] < gbuffer["depth"], bubbles["depth"], np.inf)

@@ -49,7 +49,8 @@ def mesh_of(t, cells, step):
     "06.1.once",
     points=4,
     hint="handout, equation (5): a center on an edge belongs to the triangle whose top or left "
-    "edge it is",
+    "edge it is; if left and right or top and bottom are swapped, remember that y is down. "
+    "Indices are (row, column)",
     sole="which pixels belong to a triangle",
 )
 def each_pixel_belongs_to_one_triangle(t):

@@ -29,7 +29,7 @@ def placed(pose, focal, size, u, v, z):
     sole="which texels are compared, with closed forms",
 )
 def nine_comparisons(t):
-    """Each answer is the part of nine texels that lie behind the point; beyond the map all do."""
+    """The fraction of nine texels that are not in front of the point; missing ones count as lit."""
     size, pose, focal = 9, pose_of(t.rng), t.rng.uniform(6.0, 12.0)
     depth = t.rng.uniform(2.0, 4.0, (size, size))
     depth[t.rng.random((size, size)) < 0.2] = np.inf

@@ -69,7 +69,7 @@ def a_plane_hides_nothing(t):
     sole="a closed form, one sample at a time",
 )
 def a_step_in_depth(t):
-    """Before a step in depth a sample hides what its elevation and distance say; more if higher."""
+    """Next to a step in depth a sample hides what elevation and distance say; more if higher."""
     height, width, focal, far = 9, 30, 40.0, 3.0
     normals = np.tile([0.0, 0.0, -1.0], (height, width, 1))
     r, k, factor = 1.5, 2.5, 1.4

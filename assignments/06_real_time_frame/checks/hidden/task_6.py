@@ -21,7 +21,7 @@ def spec_of(n):
     battery=[Subject("ambient_occlusion", lambda t, n: bumpy(t, n, n + 2), spec_of, sizes=(4, 9))],
 )
 def rough_walls(t):
-    """Rough walls with holes, samples beyond the picture, before sky and on the pixel itself."""
+    """Rough walls with holes, samples beyond the picture, on sky and on the pixel itself."""
     for size, radius in (((10, 13), 0.9), ((14, 9), 6.0)):
         given = bumpy(t, *size, samples=9)
         given[4][0] = radius
