@@ -70,7 +70,7 @@ def test_bad_input_is_refused() -> None:
 
 def test_the_command_draws_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_vdb(tmp_path / "block.vdb", [block()])
-    render(tmp_path / "block.vdb", orbit=2, out=tmp_path / "frames", size=24, as_json=True)
+    render(tmp_path / "block.vdb", frames=2, out=tmp_path / "frames", size=24, as_json=True)
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["frames"] == 2
     picture = np.asarray(Image.open(tmp_path / "frames" / "frame_0000.png").convert("L"))
     assert picture[12, 12] > 200

@@ -34,6 +34,9 @@ def frames() -> None:
     )
     result = frame_graph(FrameScene(scene), options).run({"camera": scene.camera})
     visible, radiance = result["gbuffer"], result["radiance"]
+    for technique in ("horizon", "disks", "directional"):
+        options = replace(options, sky_visibility=technique, gather_samples=1, disk_edge=2.0)
+        frame_graph(FrameScene(scene), options).run({"camera": scene.camera}, ["radiance"])
     d = np.ones_like(radiance)
     depth = visible.depth.astype(np.float32)
     ssao_backward(depth, visible.shading, scene.camera, d[..., 0].copy())

@@ -162,7 +162,7 @@ def test_the_command_draws_a_scan(tmp_path: Path, capsys: pytest.CaptureFixture[
     path = tmp_path / "scan.nii.gz"
     path.write_bytes(gzip.compress(nifti(solid, pixdim=(1, 1, 1, 1))))
     frames = tmp_path / "frames"
-    render(path, orbit=1, out=frames, size=32, window=(100, 200), as_json=True)
+    render(path, frames=1, out=frames, size=32, window=(100, 200), as_json=True)
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["frames"] == 1
     picture = np.asarray(Image.open(frames / "frame_0000.png").convert("L"))
     assert picture[16, 16] > 200

@@ -78,7 +78,7 @@ class PostPasses:
     def resolve(self, focused: Array) -> Array:
         """The mean of the samples of each pixel."""
         n = self.options.supersampling
-        height, width, _ = focused.shape
+        height, width = focused.shape[:2]
         boxes = focused.reshape(height // n, n, width // n, n, 3)
         mean: Array = boxes.mean(axis=(1, 3), dtype=focused.dtype)
         return mean

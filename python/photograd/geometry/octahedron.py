@@ -47,7 +47,7 @@ def _triangles(n: int) -> Numbers:
     row, column = (grid.reshape(-1) for grid in np.mgrid[0 : 2 * n, 0 : 2 * n])
     first = row * (2 * n + 1) + column
     a, b, c, d = first, first + 1, first + 2 * n + 2, first + 2 * n + 1
-    falling = (row < n) != (column < n)  # the cut runs from a to c
-    one = np.where(falling[:, None], np.stack([a, c, b], axis=1), np.stack([a, d, b], axis=1))
-    two = np.where(falling[:, None], np.stack([a, d, c], axis=1), np.stack([b, d, c], axis=1))
+    descending = (row < n) != (column < n)  # the cut runs from a to c
+    one = np.where(descending[:, None], np.stack([a, c, b], axis=1), np.stack([a, d, b], axis=1))
+    two = np.where(descending[:, None], np.stack([a, d, c], axis=1), np.stack([b, d, c], axis=1))
     return np.concatenate([one, two]).astype(np.uint32)

@@ -8,7 +8,7 @@ from ..common import FAITHFUL, pose_of
 from ..task_2 import placed, tested
 
 
-def case(t, count, size=12):
+def unseen(t, count, size=12):
     """points, normals, depth, focal, pose, bias."""
     pose, focal = pose_of(t.rng), t.rng.uniform(8.0, 14.0)
     depth = t.rng.uniform(2.0, 4.0, (size, size))
@@ -23,12 +23,12 @@ def case(t, count, size=12):
     calls=("shadow_test",),
     tolerance=FAITHFUL,
     sole="the same mistakes at unseen points",
-    battery=[Subject("shadow_test", case, lambda n: Array((n,)), rows=(0, 1), sizes=(0, 1, 7))],
+    battery=[Subject("shadow_test", unseen, lambda n: Array((n,)), rows=(0, 1), sizes=(0, 1, 7))],
 )
 def random_points_before_random_maps(t):
     """Random points with random normals and biases, inside of the map and beyond."""
     for size in (12, 5):
-        given = case(t, 300, size)
+        given = unseen(t, 300, size)
         right = t.reference.shadow_test(*given)
-        t.require(0 < np.mean(right == 1) < 1, "the test case is not informative")
+        t.require(0 < np.mean(right == 1) < 1, "the test unseen is not informative")
         t.close("part of the light", tested(t, *given), right)
