@@ -30,5 +30,5 @@ def random_points_before_random_maps(t):
     for size in (12, 5):
         given = unseen(t, 300, size)
         right = t.reference.shadow_test(*given)
-        t.require(0 < np.mean(right == 1) < 1, "the test unseen is not informative")
+        t.require(0 < np.mean(right == 1) < 1, "the test case is not informative")
         t.close("part of the light", tested(t, *given), right)
