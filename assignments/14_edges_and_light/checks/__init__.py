@@ -1,0 +1,1 @@
+"""Public checks of assignment 14, a file for each task."""
