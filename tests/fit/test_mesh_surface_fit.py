@@ -139,5 +139,7 @@ def test_it_starts_from_a_mesh_its_seams_merged_and_from_a_fit() -> None:
     assert len(cube().vertices) == 24
     again: Any = Fit.start(capture(16), options, start_from=truth()).model
     np.testing.assert_allclose(again.vertices, truth().field.vertices, atol=1e-5)  # type: ignore[attr-defined]
-    with pytest.raises(RangeError, match="mesh or textured_mesh or textured_surface, got 'dense_grid'"):
+    with pytest.raises(
+        RangeError, match="mesh or textured_mesh or textured_surface, got 'dense_grid'"
+    ):
         Fit.start(scene.capture(), options, start_from=scene.as_model(scene.truth()))
