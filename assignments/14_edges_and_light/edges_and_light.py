@@ -329,9 +329,10 @@ def next_vertex(scene, hit, u3, proposal=None):
     """
     source = scene if proposal is None else proposal
     wi = sample_brdf(source, hit, u3)
-    pdf, cos = brdf_pdf(source, hit, wi), dot(wi, hit["normals"])
-    factor = np.divide(cos, pdf, out=np.zeros(len(pdf)), where=pdf > 0)
-    return wi, brdf(scene, hit, wi), factor, closest_hit(scene, hit["points"], wi)
+    density, points = brdf_pdf(source, hit, wi), hit["points"]
+    factor, sampled = np.zeros(len(density)), density > 0
+    factor[sampled] = dot(wi, hit["normals"])[sampled] / density[sampled]
+    return wi, brdf(scene, hit, wi), factor, closest_hit(scene, points, wi)
 
 
 def path_radiance(scene, origins, directions, depth, seed, proposal=None):
@@ -340,18 +341,18 @@ def path_radiance(scene, origins, directions, depth, seed, proposal=None):
     As `trace_paths` of assignment 07, with the numbers of `path_numbers`: the same seed gives the
     same paths. Directions, densities and weights come from the scene `proposal` where one is given.
     """
-    hit = closest_hit(scene, origins, directions)
-    radiance, beta = emitted(scene, hit), np.ones((len(origins), 3))
-    live = np.flatnonzero(hit["primitive"] >= 0)
-    hit = take(hit, live)
+    vertices = closest_hit(scene, origins, directions)
+    total, beta = emitted(scene, vertices), np.ones((len(origins), 3))
+    live = np.flatnonzero(vertices["primitive"] >= 0)
+    vertices = take(vertices, live)
     for bounce in range(depth - 1):
         u = path_numbers(seed, bounce, len(origins))[:, live]
-        radiance[live] += beta[live] * direct_light(scene, hit, u[0], u[1], proposal)
-        _, f, factor, found = next_vertex(scene, hit, u[2], proposal)
+        total[live] += beta[live] * direct_light(scene, vertices, u[0], u[1], proposal)
+        _, f, factor, found = next_vertex(scene, vertices, u[2], proposal)
         beta[live] *= f * factor[:, None]
         goes_on = (found["primitive"] >= 0) & beta[live].any(axis=1)
-        hit, live = take(found, goes_on), live[goes_on]
-    return radiance
+        vertices, live = take(found, goes_on), live[goes_on]
+    return total
 
 
 def replay_backward(
