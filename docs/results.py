@@ -32,9 +32,9 @@ CANDIDATES = (
 
 
 def command(*words: str) -> dict[str, Any]:
-    """Run `photograd ...
+    """The last line of `photograd ... --json`, with what the process took.
 
-    --json`; the last line, with wall seconds and peak memory of the process.
+    wall: seconds; processor: seconds of all threads; gib: memory at its peak.
     """
     before = os.times()
     done = subprocess.Popen(
@@ -48,7 +48,9 @@ def command(*words: str) -> dict[str, Any]:
     if status:
         raise SystemExit(f"photograd {' '.join(words)} failed")
     result: dict[str, Any] = json.loads(text.strip().splitlines()[-1])
-    return {**result, "wall": os.times().elapsed - before.elapsed, "gib": usage.ru_maxrss / 2**20}
+    processor = usage.ru_utime + usage.ru_stime
+    wall = os.times().elapsed - before.elapsed
+    return {**result, "wall": wall, "processor": processor, "gib": usage.ru_maxrss / 2**20}
 
 
 def model_folder(out: Path, name: str, candidate: str) -> Path:

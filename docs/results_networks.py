@@ -13,18 +13,13 @@ import argparse
 import hashlib
 import json
 import os
-import subprocess
-import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from photograd.fitting.compare import stored_bytes
 from photograd.fitting.model import load_model
+from results import RESULTS, ROOT, command
 
-ROOT = Path(__file__).resolve().parent.parent
-RESULTS = ROOT / "docs" / "results.md"
 FITS = (  # representation, what it starts from
     ("hash_grid", None),
     ("nerf", None),
@@ -35,49 +30,29 @@ THREAD_STEPS = 300
 FILE = "cost.json"
 
 
-@dataclass(frozen=True)
-class Cost:
-    """What a fit took: processor seconds of all threads, and GiB at its peak."""
-
-    seconds: float
-    gib: float
-
-
-def command(*words: str) -> tuple[dict[str, Any], Cost]:
-    """The last line of `photograd ... --json`, and what the process took."""
-    arguments = [sys.executable, "-m", "photograd_course", *words, "--json"]
-    done = subprocess.Popen(arguments, stdout=subprocess.PIPE, text=True)
-    assert done.stdout is not None
-    text = done.stdout.read()
-    _, status, usage = os.wait4(done.pid, 0)
-    if status:
-        raise SystemExit(f"photograd {' '.join(words)} failed")
-    found: dict[str, Any] = json.loads(text.strip().splitlines()[-1])
-    return found, Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 2**20)
-
-
-def fitted(capture: Path, name: str, source: str | None, out: Path) -> Cost:
-    """Fit a representation into OUT/name, unless it is there."""
+def fitted(capture: Path, name: str, source: str | None, out: Path) -> tuple[float, float]:
+    """Fit into OUT/name, unless it is there: processor seconds, GiB at the peak."""
     folder = out / name
     if not (folder / FILE).exists():
         words = ["fit", str(capture), "--representation", name, "--out", str(folder)]
         if source is not None:
             words += ["--start-from", str(out / source)]
-        _, cost = command(*words)
-        (folder / FILE).write_text(json.dumps([cost.seconds, cost.gib]))
-    return Cost(*json.loads((folder / FILE).read_text()))
+        cost = command(*words)
+        (folder / FILE).write_text(json.dumps([cost["processor"], cost["gib"]]))
+    seconds, gib = json.loads((folder / FILE).read_text())
+    return seconds, gib
 
 
 def fit_row(capture: Path, name: str, source: str | None, out: Path) -> str:
     """A representation's line of the table."""
-    cost = fitted(capture, name, source, out)
+    seconds, gib = fitted(capture, name, source, out)
     folder = out / name
-    found, _ = command("evaluate", str(folder), str(capture), "--out", str(folder / "views.png"))
+    found = command("evaluate", str(folder), str(capture), "--out", str(folder / "views.png"))
     model = load_model(folder)
     size = stored_bytes(model) / 2**20
     start = "" if source is None else f" from {source}"
     return (
-        f"| {name}{start} | {len(model.history):,} | {cost.seconds:.0f} | {cost.gib:.2f} "
+        f"| {name}{start} | {len(model.history):,} | {seconds:.0f} | {gib:.2f} "
         f"| {size:.1f} | {found['psnr']:.2f} | {found['ssim']:.3f} | {len(found['views'])} |"
     )
 
@@ -100,7 +75,7 @@ def thread_rows(capture: Path, out: Path) -> list[str]:
             words = ["fit", str(capture), "--representation", "hash_grid", "--seed", "7"]
             words += ["--steps", str(THREAD_STEPS), "--threads", str(threads)]
             command(*words, "--out", str(folder))
-        found, _ = command("evaluate", str(folder), str(capture), "--out", str(folder / "v.png"))
+        found = command("evaluate", str(folder), str(capture), "--out", str(folder / "v.png"))
         rows.append(f"| {k + 1} | {threads} | `{digest(folder)}` | {found['psnr']:.6f} |")
         print(rows[-1], flush=True)  # noqa: T201  a long run says what it has
     return rows
