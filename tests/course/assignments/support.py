@@ -31,13 +31,12 @@ from photograd_course.build.course_files import build_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
 from photograd_course.build.rules import reading_findings
-from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
-from photograd_course.grading.runner import run_checks
 from photograd_course.viz.handout import Facts
 from photograd_course.viz.style import HANDOUT_DPI, save_figure
 from PIL import Image
 
+from course.assignments.kept_verdicts import verdict_on
 from support.tree import ROOT
 
 ASSIGNMENTS = ROOT / "assignments"
@@ -106,12 +105,7 @@ def _run(
     bundle = bundle_of(folder, secret)
     seeded = [each for each in bundle.checks if secret == SECRET or each.visibility != "public"]
     checks = [each for each in seeded if not tasks or each.task in tasks]
-    sources = bundle.hand(bundle.solution_files(text)).sources
-    alone: list[Outcome] = []
-    end = run_checks(
-        checks, bundle.setting, lambda given: LocalStudent(sources, given), on_outcome=alone.append
-    )
-    return alone, end
+    return verdict_on(text, folder, bundle, checks)
 
 
 def lost(outcomes: list[Outcome]) -> set[str]:

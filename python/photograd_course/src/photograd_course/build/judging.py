@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
@@ -25,9 +26,10 @@ from .judging_process import Program
 
 WORKERS = 2
 WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
-# Files of a folder that decide what becomes of a text, its checks apart; and of this package.
+# Files of a folder that decide what becomes of a text, its checks apart; and what of this package
+# does not.
 DECIDING = ("assignment.toml", "adapters.py")
-ENGINE = ("grading", "assignment", "worker")
+ASIDE = ("build", "cli", "kits", "student", "submissions", "viz")
 RULES_SECRET = b"seeds of hidden checks while rules are looked at"
 
 
@@ -106,7 +108,10 @@ class Judge:
     seconds_of: Mapping[str, float] = field(default_factory=dict)
     ran: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock)
-    _known: str = ""
+
+    @cached_property
+    def _decides(self) -> str:
+        return what_decides(self.folder)
 
     def judge(self, job: Job) -> Verdict:
         """The verdict on one text, from the cache where it is known.
@@ -149,7 +154,8 @@ class Judge:
     def _judge(self, job: Job, program: Program) -> Verdict:
         place = None
         if self.cache is not None:
-            key = hashlib.sha256(f"{self._stem()}|{job!r}".encode()).hexdigest()
+            decides = f"{self._decides}|{self.secret.hex()}|{job!r}"
+            key = hashlib.sha256(decides.encode()).hexdigest()
             place = self.cache / key[:2] / f"{key}.json"
             if place.exists():
                 return _from_json(place.read_bytes())
@@ -194,24 +200,30 @@ class Judge:
             raise Error(message("judge", self.folder.name, "an outcome of each check", got))
         return outcomes, open_ones[-1]
 
-    def _stem(self) -> str:
-        """What verdicts depend on besides the text."""
-        if not self._known:
-            parts = [np.__version__, sys.version.split()[0], self.secret.hex()]
-            package = Path(__file__).resolve().parents[1]
-            paths = [path for name in ENGINE for path in sorted((package / name).glob("*.py"))]
-            paths.append(Path(__file__).with_name("judge_program.py"))
-            paths += [self.folder / name for name in DECIDING]
-            paths.append(self.folder / f"{read_manifest(self.folder).module}.py")  # the reference
-            parts += [
-                f"{path.name}:{hashlib.sha256(path.read_bytes()).hexdigest()}"
-                for path in paths
-                if path.exists()
-            ]
-            parts += [f"{path}:{text}" for path, text in check_files(self.folder).items()]
-            parts += brought_sources(self.folder, read_manifest(self.folder)).values()
-            self._known = "|".join(parts)
-        return self._known
+
+def what_decides(folder: Path) -> str:
+    """What verdicts on texts of an assignment depend on, besides the text and the secret.
+
+    Its checks, the reference, what it brings from earlier assignments, and the package.
+    """
+    manifest = read_manifest(folder)
+    paths = [folder / name for name in (*DECIDING, f"{manifest.module}.py")]
+    parts = [np.__version__, sys.version.split()[0], _package_digest()]
+    parts += [f"{path.name}:{path.read_text('utf-8')}" for path in paths if path.exists()]
+    parts += [f"{path}:{text}" for path, text in check_files(folder).items()]
+    parts += brought_sources(folder, manifest).values()
+    return hashlib.sha256("|".join(parts).encode()).hexdigest()
+
+
+@lru_cache(maxsize=1)
+def _package_digest() -> str:
+    """Of the part of this package that judges."""
+    package = Path(__file__).resolve().parents[1]
+    digest = hashlib.sha256(Path(__file__).with_name("judge_program.py").read_bytes())
+    for path in sorted(package.rglob("*.py")):
+        if path.relative_to(package).parts[0] not in ASIDE:
+            digest.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def _from_json(data: bytes) -> Verdict:
