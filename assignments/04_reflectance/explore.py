@@ -15,31 +15,21 @@ from matplotlib.figure import Figure
 from photograd_course.explore import option
 
 pixels, steps = option("pixels", 64), option("steps", 60)
-rough, metal_share, start = (
-    option("roughness", 0.35),
-    option("metalness", 0.0),
-    option("start", 0.7),
-)
+rough, metal_share = option("roughness", 0.35), option("metalness", 0.0)
+start = option("start", 0.7)
 COLOR = np.array([0.75, 0.3, 0.1])
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
 
 # %% [markdown]
 # ## A ball
-# Seen from far away; every pixel has its own shading frame, in which the normal is +z.
 
 
 # %%
 def ball(size):
     """Mask (size, size) of the ball's pixels; for these wo (N, 3), and wi for each light."""
-    x = (np.arange(size) + 0.5) / size * 2.04 - 1.02
-    right, up = np.meshgrid(x, -x)
-    seen = right**2 + up**2 < 0.998
-    normal = np.stack([right, up, np.sqrt(np.maximum(1 - right**2 - up**2, 0))], axis=-1)[seen]
-    tangent = np.cross([0.0, 1.0, 0.0], normal)
-    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    seen, frame = mine.ball(size)
     lights = [frame @ (np.array(place) / np.linalg.norm(place)) for place, _ in LIGHTS]
-    return seen, frame @ np.array([0.0, 0.0, 1.0]), lights
+    return seen, frame[:, :, 2], lights
 
 
 def picture(scene, color, m, r, material):

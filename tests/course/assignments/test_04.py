@@ -184,7 +184,7 @@ def test_right_samples_are_rejected_as_rarely_as_they_should(solution) -> None:
 
 
 def test_a_wrong_sampler_is_told_where_its_samples_lie() -> None:
-    """About a tenth of the right ones is below the surface (Figure 3), of the bare cap's half."""
+    """About a tenth of the right ones is below the surface (Figure 7), of the bare cap's half."""
     outcomes = judge(FOLDER, apply_mutant(FOLDER, "sample_cap_alone"), tasks=("04.4",))
     told = next(each for each in outcomes if each.id == "04.4.chi")
     mine, right = (
