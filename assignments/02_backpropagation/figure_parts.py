@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from matplotlib.patches import FancyArrowPatch
 from photograd_course.viz.style import BLUE, FRAME, INK, ORANGE, place_axes
 from photograd_course.viz.style import RED as DARK_RED
@@ -64,7 +65,7 @@ def key(axes, x, y):
     """Which number is which."""
     axes.text(x, y, "value", color=BLUE, fontsize=TEXT, fontweight="bold")
     axes.text(x, y + 0.22, "gradient", color=ORANGE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.44, "× slope", color=FRAME, fontsize=TEXT)
+    axes.text(x, y + 0.44, "× local derivative", color=FRAME, fontsize=TEXT)
 
 
 def slopes_of(user, source):
@@ -118,3 +119,51 @@ def blurred(texels):
             [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
         )
     return rows
+
+
+def draw_worked_graph(axes, nodes):
+    """(x + y) z, with values, gradients and local derivatives."""
+    at = {"x": (0.9, 0.45), "y": (0.9, 1.65), "+": (2.6, 1.05), "z": (2.6, 2.15), "×": (4.3, 1.55)}
+    for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
+        slope = first_slope(nodes[end], nodes[start])
+        arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
+    for name, node in nodes.items():
+        circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
+    key(axes, 5.0, 0.35)
+
+
+def picture_and_gradients(module):
+    """A gray image, its target, the derivatives of its error, and the image after a step."""
+    row, column = np.mgrid[0:24, 0:32]
+    dark = (row - 11.5) ** 2 + (column - 15.5) ** 2 < 68
+    target = 0.2 + 0.6 * dark
+    start = np.full(target.shape, 0.45)
+
+    def loss_of(numbers):
+        leaves = [[module.Value(t) for t in line] for line in numbers]
+        seen = blurred(leaves)
+        loss = module.Value(0.0)
+        for line, wanted in zip(seen, target, strict=True):
+            for value, want in zip(line, wanted, strict=True):
+                loss = loss + (value - float(want)) ** 2
+        return loss, leaves, seen
+
+    loss, leaves, seen = loss_of(start)
+    module.backward(loss)
+    by_pixel, by_texel = (
+        np.array([[v.grad for v in line] for line in each]) for each in (seen, leaves)
+    )
+    after = start - 0.2 * by_texel
+    step = np.zeros(start.shape)
+    step[11, 8] = 1e-5
+    slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
+    return {
+        "start": start,
+        "target": target,
+        "dark": dark,
+        "by_pixel": by_pixel,
+        "by_texel": by_texel,
+        "after": after,
+        "checked": by_texel[11, 8] / slope,
+        "fall": loss_of(after)[0].data / loss.data,
+    }
