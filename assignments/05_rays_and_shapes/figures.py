@@ -13,7 +13,65 @@ from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 
-def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
+def fig1_images(module: ModuleType) -> tuple[Figure, Facts]:
+    """A ball of glass over a floor, and a ring of triangles, by your functions."""
+    width, height, radius = 300, 216, 1.2
+    level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
+    center = np.array([0.0, 0.3, 0.0])
+    place, way = module.camera_rays(width, height, 210.0, 210.0, width / 2, height / 2, level)
+    inside, touched = np.zeros(len(way), bool), np.zeros(len(way), bool)
+    for bounce in range(4):
+        t = module.hit_sphere(place, way, center, radius)
+        on = np.isfinite(t) & (inside | (bounce == 0))
+        place[on] += t[on, None] * way[on]
+        way[on], through = module.refract(way[on], (place[on] - center) / radius, 1.5)
+        inside[on] ^= through
+        touched |= on
+    glass = np.clip(_world(place, way), 0, 1).reshape(height, width, 3)
+    blue = (glass[..., 2] - glass[..., 0]).reshape(2, -1)
+    upper, lower = (blue[k, half].mean() for k, half in enumerate(touched.reshape(2, -1)))
+    ring, across, down = _ring(24, 12), 120, 86
+    origins, ways = _ring_rays(module, across, down, 80.0)
+    t, number = module.trace_mesh(ring, origins, ways)
+    a, b, c = np.moveaxis(ring, 1, 0)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    shade = 0.15 + 0.85 * np.abs(np.sum(normal[number] * ways, axis=1))
+    shade[number < 0] = 1.0
+    facts: Facts = {
+        "every ray leaves the ball": Fact(not inside.any() and touched.any()),
+        "in the ball the sky is below": Fact(lower - upper, 0.2, 1.0),
+        "the ring is hit": Fact(np.isfinite(t).mean(), 0.2, 0.8),
+    }
+    figure, (left, right) = subplots(7.0, 2.75, 1, 2)
+    left.imshow(np.round(glass * 40) / 40)
+    right.imshow(shade.reshape(down, across), cmap="gray", vmin=0, vmax=1)
+    left.set(xticks=[], yticks=[], title="a ball of glass")
+    right.set(xticks=[], yticks=[], title=f"{len(ring)} triangles")
+    return figure, facts
+
+
+def _world(origins: Array, ways: Array) -> Array:
+    """Colors (R, 3) of a checkered floor and of the sky."""
+    down = ways[:, 1] < -1e-6
+    t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
+    x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
+    floor = np.where(((x + z) % 2 == 0)[:, None], (0.85, 0.45, 0.2), (0.95, 0.95, 0.9))
+    fade = np.exp(-t / 25)[:, None]
+    sky = np.stack([0.5 - 0.3 * ways[:, 1], 0.7 - 0.2 * ways[:, 1], np.ones(len(ways))], axis=1)
+    return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
+
+
+def _ring_rays(module: ModuleType, width: int, height: int, focal: float) -> tuple[Array, Array]:
+    """Rays of a camera above the ring that looks down."""
+    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
+    rays: tuple[Array, Array] = module.camera_rays(
+        width, height, focal, focal, width / 2, height / 2, pose
+    )
+    return rays
+
+
+def fig2_far(module: ModuleType) -> tuple[Figure, Facts]:
     """Error of the hits of a small sphere from far away, by two formulas."""
     rng = np.random.default_rng(1)
     n, d = _units(rng, 200), _units(rng, 200)
@@ -47,9 +105,9 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
+def fig3_edges(module: ModuleType) -> tuple[Figure, Facts]:
     """Weights of two triangles; rays onto edges that miss all triangles."""
-    size = 36
+    size = 54
     y, x = (np.mgrid[:size, :size] + 0.5) / size
     square = np.array([[[0, 0, 1], [1, 0, 1], [1, 1, 1]], [[0, 0, 1], [1, 1, 1], [0, 1, 1.0]]])
     picture, sums = np.ones((size, size, 3)), []
@@ -95,7 +153,7 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
+def fig4_glass(module: ModuleType) -> tuple[Figure, Facts]:
     """Rays through a ball of glass; angle of refraction by angle of incidence."""
     eta = 1.5
     heights = np.concatenate([np.linspace(-0.9, 0.9, 13), [0.05]])
@@ -137,7 +195,7 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
+def fig5_march(module: ModuleType) -> tuple[Figure, Facts]:
     """Sphere tracing of two rays; the derivative of t with respect to a radius."""
     asked: list[Array] = []
 
@@ -192,26 +250,25 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
+def fig6_tree(module: ModuleType) -> tuple[Figure, Facts]:
     """Boxes tested for each pixel; boxes by the number of triangles."""
-    width, height = 50, 30
-    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
-    origins, ways = module.camera_rays(width, height, 29.0, 29.0, width / 2, height / 2, pose)
+    width, height = 90, 54
+    origins, ways = _ring_rays(module, width, height, 52.0)
     counts, depth = _asked(module, _ring(16, 8), origins, ways)
     every = [
         module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
-        for o, d in zip(origins[::7], ways[::7], strict=True)
+        for o, d in zip(origins[::23], ways[::23], strict=True)
     ]
     hits = np.isfinite(depth)
     sizes, means = [], []
-    chosen = np.flatnonzero(hits)[::10]
+    chosen = np.flatnonzero(hits)[::32]
     for turns in (8, 16, 32, 64):
         sizes.append(turns * turns)
         found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
         "the hits are those of testing every triangle": Fact(
-            np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
+            np.allclose(_finite(depth[::23]), _finite(np.array(every)), atol=1e-9)
         ),
         "a miss of the root tests one box": Fact(counts.min() == 1),
         "the most expensive pixel tests some 60": Fact(int(counts.max()), 45, 75),
@@ -316,11 +373,12 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
     return asked, found
 
 
-FIGURES = figures_of(fig1_far, fig2_edges, fig3_glass, fig4_march, fig5_tree)
+FIGURES = figures_of(fig1_images, fig2_far, fig3_edges, fig4_glass, fig5_march, fig6_tree)
 RED = {
-    "fig1_far": "sphere_quadratic",
-    "fig2_edges": "triangle_cramer",
-    "fig3_glass": "refract_from_inside_alike",
-    "fig4_march": "march_d_no_cosine",
-    "fig5_tree": "traverse_far_child_lost",
+    "fig1_images": "refract_from_inside_alike",
+    "fig2_far": "sphere_quadratic",
+    "fig3_edges": "triangle_cramer",
+    "fig4_glass": "refract_from_inside_alike",
+    "fig5_march": "march_d_no_cosine",
+    "fig6_tree": "traverse_far_child_lost",
 }
