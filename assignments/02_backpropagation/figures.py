@@ -7,17 +7,7 @@ import figure_parts as parts
 import numpy as np
 from figure_parts import SMALL
 from photograd_course.viz.handout import Fact, figures_of
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GRAY,
-    INK,
-    ORANGE,
-    new_figure,
-    place_axes,
-    signed_color_map,
-)
-from photograd_course.viz.style import RED as DARK_RED
+from photograd_course.viz.style import GRAY, INK, ORANGE, new_figure, place_axes, signed_color_map
 
 WIDTH = 7.0  # inches
 
@@ -111,57 +101,7 @@ def fig2_cost(module):
     return figure, facts
 
 
-def fig3_kink(module):
-    """max(x, 2): the value, and its derivative from the engine and by finite differences."""
-    where = np.concatenate([np.linspace(1.0, 1.99, 50), [2.0], np.linspace(2.01, 3.0, 50)])
-    h, slopes, values = 0.2, [], []
-    for number in where:
-        x = module.Value(number)
-        f = x.maximum(2.0)
-        module.backward(f)
-        slopes.append(x.grad)
-        values.append(f.data)
-    slopes, values = np.array(slopes), np.array(values)
-    steps = (np.maximum(where + h, 2) - np.maximum(where - h, 2)) / (2 * h)
-    x, two = module.Value(2.0), module.Value(2.0)
-    module.backward(x.maximum(two))
-    figure = new_figure(WIDTH, 2.5)
-    left = place_axes(figure, 0.55, 0.35, 2.5, 1.65)
-    left.plot(where, values, color=INK, lw=2)
-    left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
-    right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
-    right.plot(where, steps, "--", color=GRAY, lw=1.8, label="finite differences")
-    below = where < 2
-    right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
-    right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
-    right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
-    right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
-    right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
-    right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
-    right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
-    right.set(
-        title="its derivative with respect to x",
-        xlabel="x",
-        xticks=[1, 2, 3],
-        yticks=[0, 0.5, 1],
-        ylim=(-0.12, 1.45),
-    )
-    right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
-    far = np.abs(where - 2) > h + 1e-9
-    facts = {
-        "0 left of the kink, 1 right of it": Fact(
-            (slopes[where < 2] == 0).all() and (slopes[where > 2] == 1).all()
-        ),
-        "at the tie x gets 0 and the other input 1": Fact(x.grad == 0.0 and two.grad == 1.0),
-        "finite differences give 1/2 at the tie": Fact(steps[50], 0.5 - 1e-9, 0.5 + 1e-9),
-        "both agree farther than a step from the kink": Fact(
-            np.allclose(slopes[far], steps[far], atol=1e-9)
-        ),
-    }
-    return figure, facts
-
-
-def fig4_order(module):
+def fig3_order(module):
     """One graph, visited level by level and in the engine's order."""
     x = module.Value(2.0)
     a = x * x
@@ -201,7 +141,7 @@ def fig4_order(module):
     return figure, facts
 
 
-def fig5_uses_add_up(module):
+def fig4_uses_add_up(module):
     """(x + y) + x x: three uses of x, and the tangents of their sums."""
     x, y = module.Value(5.0), module.Value(4.0)
     total, square = x + y, x * x
@@ -253,59 +193,10 @@ def fig5_uses_add_up(module):
     return figure, facts
 
 
-def fig6_steps(module):
-    """The error that grad_check reports for a right gradient and for one 1 % too long."""
-    place = np.array([0.3, -0.8, 1.2, 0.5])
-
-    def f(x, factor=1.0):
-        s = np.sin(x[0] * x[1]) + np.exp(x[2]) * x[3]
-        slopes = np.array(
-            [
-                x[1] * np.cos(x[0] * x[1]),
-                x[0] * np.cos(x[0] * x[1]),
-                np.exp(x[2]) * x[3],
-                np.exp(x[2]),
-            ]
-        )
-        return s, factor * slopes
-
-    steps = 10.0 ** np.arange(-12, 0.1, 0.5)
-    right = np.array([module.grad_check(f, place, eps) for eps in steps])
-    wrong = np.array([module.grad_check(lambda x: f(x, 1.01), place, eps) for eps in steps])
-    figure = new_figure(WIDTH, 3.0)
-    axes = place_axes(figure, 0.75, 0.2, 4.3, 2.25)
-    axes.axhline(1e-6, color=DARK_RED, lw=1.2)
-    axes.text(3.5, 1e-6, "passes below", color=DARK_RED, fontsize=SMALL, va="center")
-    axes.axvline(1e-5, color=FRAME, lw=0.9, ls=":")
-    axes.loglog(steps, wrong, "s--", color=BLUE, ms=3.5)
-    axes.loglog(steps, np.maximum(right, 1e-13), "o-", color=ORANGE, ms=4)
-    axes.text(3.5, 1e-2, "gradient 1 % too long", color=BLUE, fontsize=SMALL, va="center")
-    axes.text(3.5, 1e-1, "right gradient", color=ORANGE, fontsize=SMALL, va="center")
-    axes.text(3e-12, 2e-9, "rounding,\nover eps", fontsize=SMALL)
-    axes.text(1e-3, 2e-10, "truncation,\ntimes eps squared", fontsize=SMALL)
-    axes.set(xlabel="eps", ylabel="error reported", xlim=(4e-13, 2), ylim=(1e-13, 3))
-    axes.tick_params(labelsize=SMALL)
-    at = {
-        exponent: int(np.argmin(np.abs(np.log10(steps) - exponent)))
-        for exponent in (-12, -5, -3, -2)
-    }
-    facts = {
-        "at 1e-5 a right gradient is a thousand times below the limit": Fact(right[at[-5]] < 1e-9),
-        "with a step of 1e-12 it would fail": Fact(right[at[-12]] > 1e-6),
-        "ten times the step, a hundred times the truncation": Fact(
-            right[at[-2]] / right[at[-3]], 90.0, 110.0
-        ),
-        "1 % off is reported as 1 %": Fact(wrong[at[-5]], 0.0098, 0.0101),
-    }
-    return figure, facts
-
-
-FIGURES = figures_of(fig1_engine, fig2_cost, fig3_kink, fig4_order, fig5_uses_add_up, fig6_steps)
+FIGURES = figures_of(fig1_engine, fig2_cost, fig3_order, fig4_uses_add_up)
 RED = {
     "fig1_engine": "product_no_swap",
     "fig2_cost": "order_with_repeats",
-    "fig3_kink": "max_tie_to_first",
-    "fig4_order": "order_breadth_first",
-    "fig5_uses_add_up": "overwrite",
-    "fig6_steps": "check_one_sided",
+    "fig3_order": "order_breadth_first",
+    "fig4_uses_add_up": "overwrite",
 }

@@ -160,53 +160,7 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig4_residual(module: ModuleType) -> tuple[Figure, Facts]:
-    """The error of a half-recovered texture, and one step."""
-    truth = landscape(48, 64)
-    uv = np.random.default_rng(1).random((40_000, 2))
-    target = module.bilinear_sample(truth, uv)
-    T = module.recover_texture(np.full(truth.shape, 0.5), uv, target, 2)[0]
-    _, d_T = module.loss_and_grad(T, uv, target)
-    step = 0.95 * 2 / module.largest_curvature(truth.shape[:2], uv, 40)
-    missing, added = truth - T, -step * d_T
-    agree = np.sign(missing) == np.sign(added)
-    large = np.abs(missing) > 0.05
-    share = float(np.vdot(missing, added) / np.vdot(missing, missing))
-    facts: Facts = {
-        "99 % of what misses by more than 0.05 moves the right way": Fact(
-            agree[large].mean(), 0.99, 1
-        ),
-        "the step overshoots: it is 1.6 times the difference": Fact(share, 1.4, 1.8),
-        "gradient and residual look alike": Fact(_cosine(missing, added), 0.95, 0.999),
-        "the step brings the texture closer": Fact(
-            np.linalg.norm(missing - added) / np.linalg.norm(missing), 0, 0.75
-        ),
-    }
-    figure, panels = subplots(7.0, 4.2, 2, 2)
-    top = 0.4
-    shown = ((T, "T after 2 steps"), (truth, "truth"))
-    for axes, (values, title) in zip(panels[0], shown, strict=True):
-        axes.imshow(_screen(values), interpolation="nearest")
-        axes.set_title(title)
-    signed = ((missing, "difference: truth − T"), (added, "one step: −τ ∂L/∂T"))
-    colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
-    for axes, (values, title) in zip(panels[1], signed, strict=True):
-        image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
-        axes.set_title(title)
-    for axes in panels.flat:
-        axes.set(xticks=[], yticks=[])
-    figure.colorbar(
-        image,
-        ax=panels,
-        ticks=[-top, 0, top],
-        shrink=0.45,
-        anchor=(0, 0.03),
-        label="mean of channels",
-    )
-    return figure, facts
-
-
-def fig5_step(module: ModuleType) -> tuple[Figure, Facts]:
+def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
     """PSNR of the texture against steps, for learning rates around the largest stable one."""
     rng = np.random.default_rng(0)
     truth, uv = rng.random((32, 32, 1)), rng.random((20_000, 2))
@@ -249,7 +203,7 @@ def fig5_step(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
+def fig5_mips(module: ModuleType) -> tuple[Figure, Facts]:
     """A fine pattern minified: every fourth texel, and the mip level of that size."""
     i, j = np.mgrid[0:128, 0:128] / 128
     rings = (0.5 + 0.5 * np.cos(150 * (i**2 + j**2)))[:, :, None]
@@ -329,10 +283,6 @@ def _centers(shape: tuple[int, int]) -> np.ndarray:
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
 
-def _cosine(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.vdot(a, b) / (np.linalg.norm(a) * np.linalg.norm(b)))
-
-
 def _screen(linear: np.ndarray) -> np.ndarray:
     """Linear radiance, gamma-encoded for display."""
     return np.clip(linear, 0, 1) ** (1 / 2.2)
@@ -346,14 +296,11 @@ def _grid(axes: Axes, shape: tuple[int, int]) -> None:
     axes.set(xlim=(0, 1), ylim=(1, 0), aspect=4 / 6, xticks=[], yticks=[])
 
 
-FIGURES = figures_of(
-    fig1_photograph, fig2_surface, fig3_adjoint, fig4_residual, fig5_step, fig6_mips
-)
+FIGURES = figures_of(fig1_photograph, fig2_surface, fig3_adjoint, fig4_step, fig5_mips)
 RED = {
     "fig2_surface": "half_texel",
     "fig3_adjoint": "adjoint_last_wins",
-    "fig4_residual": "grad_of_values",
-    "fig5_step": "curvature_missing_two",
+    "fig4_step": "curvature_missing_two",
     "fig1_photograph": "unseen_filled",
-    "fig6_mips": "mips_picked",
+    "fig5_mips": "mips_picked",
 }

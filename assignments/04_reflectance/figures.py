@@ -168,55 +168,7 @@ def fig4_facets(module):
     return figure, facts
 
 
-def fig5_lobes(module):
-    """Lobes of light from 45 degrees: Phong's, and GGX of increasing roughness."""
-    angle = np.radians(np.linspace(-89.5, 89.5, 359))
-    wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
-    wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(angle), 1))
-    with np.errstate(under="ignore"):
-        highlight = module.phong(wo, wi, 1.0, 40)[:, 0]
-    curves = {r: module.ggx_lobe(wo, wi, np.full(len(wo), r)) for r in (0.4, 0.6, 0.8, 1.0)}
-    height = curves[0.4].max()
-    with np.errstate(under="ignore"):
-        matched = highlight * (height / highlight.max())
-    away = np.isclose(np.abs(np.degrees(angle) - 45), 40)  # of the mirror direction
-    peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
-    facts = {
-        "Phong's peak lies in the mirror direction": Fact(
-            np.degrees(angle[np.argmax(highlight)]), 44.4, 45.6, held="about a model that is given"
-        ),
-        "at roughness 0.4 the peak lies within 3 degrees of it": Fact(
-            peaks[0.4], 44, 48, red="lobe_not_squared"
-        ),
-        "at roughness 0.6 it lies 11.5 degrees beyond": Fact(
-            peaks[0.6], 56.4, 56.6, red="lobe_no_roots"
-        ),
-        "at roughness 0.8 it is brightest from the horizon": Fact(
-            peaks[0.8], 89, 90, red="lobe_facets_stretched"
-        ),
-        "40 degrees away GGX has 1000 times Phong's light or more": Fact(
-            (curves[0.4][away] / matched[away]).min(), 1000, 1e6, red="lobe_beckmann"
-        ),
-    }
-    figure, panels = subplots(7.0, 2.9, 1, 2)
-    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
-    degrees = np.degrees(angle)
-    for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
-        if r > 0.4:
-            panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
-    panels[0].set(title="GGX lobes", ylabel="D V [1/sr]", ylim=(0, 1.5))
-    panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
-    panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
-    panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
-    for axes in panels:
-        axes.axvline(45, color=FRAME, linewidth=0.7)
-        axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(loc="upper left", fontsize=7)
-    return figure, facts
-
-
-def fig6_cap(module):
+def fig5_cap(module):
     """Visible normals of a squeezed hemisphere; the hemisphere; the cap of reflected directions."""
     n, squeeze, z = 6000, 0.4, 0.5
     v = np.array([np.sqrt(1 - z * z), z])
@@ -253,7 +205,7 @@ def fig6_cap(module):
     return figure, facts
 
 
-def fig7_samples(module):
+def fig6_samples(module):
     """Samples over their density, and weights of two samplers."""
     rng = np.random.default_rng(7)
     r, n = 0.6, 4000
@@ -307,7 +259,7 @@ def fig7_samples(module):
     return figure, facts
 
 
-def fig8_by_roughness(module):
+def fig7_by_roughness(module):
     """A plastic ball, its derivative with respect to roughness, and a finite difference."""
     size, r, step = 150, 0.35, 0.02
     color = np.array([0.75, 0.12, 0.08])
@@ -366,8 +318,7 @@ FIGURES = figures_of(
     fig2_solid_angle,
     fig3_furnace,
     fig4_facets,
-    fig5_lobes,
-    fig6_cap,
-    fig7_samples,
-    fig8_by_roughness,
+    fig5_cap,
+    fig6_samples,
+    fig7_by_roughness,
 )

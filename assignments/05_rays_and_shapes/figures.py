@@ -71,41 +71,7 @@ def _ring_rays(module: ModuleType, width: int, height: int, focal: float) -> tup
     return rays
 
 
-def fig2_far(module: ModuleType) -> tuple[Figure, Facts]:
-    """Error of the hits of a small sphere from far away, by two formulas."""
-    rng = np.random.default_rng(1)
-    n, d = _units(rng, 200), _units(rng, 200)
-    d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
-    d /= np.linalg.norm(d, axis=1, keepdims=True)
-    away = 10.0 ** np.arange(9)
-    ours, quadratic, missed = [], [], []
-    for distance in away:
-        origins = n - distance * d
-        t = module.hit_sphere(origins, d, np.zeros(3), 1.0)
-        ours.append(_off(origins, d, np.where(np.isfinite(t), t, 0.0)))
-        b = np.sum(origins * d, axis=1)
-        rest = b**2 - (np.sum(origins**2, axis=1) - 1)
-        kept = rest >= 0
-        missed.append(1 - kept.mean())
-        quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
-    facts: Facts = {
-        "the quadratic is off by more than a centimeter from 1e7": Fact(quadratic[7], 1e-2, 10.0),
-        "from 1e8 by more than the radius": Fact(quadratic[8], 1.0, 1e3),
-        "from 1e8 it misses a tenth or more": Fact(missed[8], 0.1, 1.0),
-        "ours below 1e-7 at 1e8": Fact(ours[8], 0.0, 1e-7),
-    }
-    figure, axes = subplots(7.0, 2.9)
-    tiny = 1e-17
-    axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
-    axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
-    note(axes, "quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON)
-    note(axes, "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE)
-    axes.set(xlabel="distance of the origin  [radii]", ylabel="error of the hit  [radii]")
-    plain_axes(axes)
-    return figure, facts
-
-
-def fig3_edges(module: ModuleType) -> tuple[Figure, Facts]:
+def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     """Weights of two triangles; rays onto edges that miss all triangles."""
     size = 54
     y, x = (np.mgrid[:size, :size] + 0.5) / size
@@ -153,49 +119,7 @@ def fig3_edges(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig4_glass(module: ModuleType) -> tuple[Figure, Facts]:
-    """Rays through a ball of glass; angle of refraction by angle of incidence."""
-    eta = 1.5
-    heights = np.concatenate([np.linspace(-0.9, 0.9, 13), [0.05]])
-    start = np.stack([np.full(14, -2.0), heights, np.zeros(14)], axis=1)
-    ways = np.tile([1.0, 0, 0], (14, 1))
-    t = module.hit_sphere(start, ways, np.zeros(3), 1.0)
-    first = start + _finite(t)[:, None] * ways
-    within, entered = module.refract(ways, first, eta)
-    t = module.hit_sphere(first, within, np.zeros(3), 1.0)
-    second = first + _finite(t)[:, None] * within
-    out, left_it = module.refract(within, second, eta)
-    crossing = second[:, 0] - second[:, 1] * _finite(out[:, 0] / out[:, 1])
-    angle = np.radians(np.linspace(0.5, 89.5, 179))
-    up = np.tile([0.0, 0, 1], (179, 1))
-    ins = np.stack([np.sin(angle), 0 * angle, -np.cos(angle)], axis=1)
-    outs = ins * [1, 1, -1]
-    (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
-    critical = np.degrees(angle[got_out].max(initial=0.0))
-    facts: Facts = {
-        "rays near the axis cross 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
-        "the outer ones nearer": Fact(0.5 < crossing[0] < 1.2),
-        "all enter and leave": Fact(entered.all() and left_it.all()),
-        "nothing leaves beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
-    }
-    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
-    left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
-    for r in range(13):
-        path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
-        left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
-    left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
-    left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
-    degrees = np.degrees(angle)
-    right.plot(degrees, _angle(bent), color=BLUE)
-    right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
-    note(right, "into glass", (60, 35), (0, -14), color=BLUE)
-    note(right, "out of glass", (35, 60), (-52, 4), color=ORANGE)
-    right.set(xlabel="incidence  [°]", ylabel="refraction  [°]", xlim=(0, 90), ylim=(0, 90))
-    plain_axes(right)
-    return figure, facts
-
-
-def fig5_march(module: ModuleType) -> tuple[Figure, Facts]:
+def fig3_march(module: ModuleType) -> tuple[Figure, Facts]:
     """Sphere tracing of two rays; the derivative of t with respect to a radius."""
     asked: list[Array] = []
 
@@ -250,7 +174,7 @@ def fig5_march(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig6_tree(module: ModuleType) -> tuple[Figure, Facts]:
+def fig4_tree(module: ModuleType) -> tuple[Figure, Facts]:
     """Boxes tested for each pixel; boxes by the number of triangles."""
     width, height = 90, 54
     origins, ways = _ring_rays(module, width, height, 52.0)
@@ -288,18 +212,6 @@ def fig6_tree(module: ModuleType) -> tuple[Figure, Facts]:
     right.minorticks_off()
     plain_axes(right)
     return figure, facts
-
-
-def _units(rng: np.random.Generator, count: int) -> Array:
-    v = rng.normal(size=(count, 3))
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
-
-
-def _off(origins: Array, ways: Array, t: Array) -> float:
-    """Largest distance of a point from the unit sphere."""
-    if not len(t):
-        return 1.0
-    return float(np.abs(np.linalg.norm(origins + t[:, None] * ways, axis=1) - 1).max())
 
 
 def _finite(t: Array) -> Array:
@@ -373,12 +285,10 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
     return asked, found
 
 
-FIGURES = figures_of(fig1_images, fig2_far, fig3_edges, fig4_glass, fig5_march, fig6_tree)
+FIGURES = figures_of(fig1_images, fig2_edges, fig3_march, fig4_tree)
 RED = {
     "fig1_images": "refract_from_inside_alike",
-    "fig2_far": "sphere_quadratic",
-    "fig3_edges": "triangle_cramer",
-    "fig4_glass": "refract_from_inside_alike",
-    "fig5_march": "march_d_no_cosine",
-    "fig6_tree": "traverse_far_child_lost",
+    "fig2_edges": "triangle_cramer",
+    "fig3_march": "march_d_no_cosine",
+    "fig4_tree": "traverse_far_child_lost",
 }
