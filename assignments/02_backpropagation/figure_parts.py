@@ -110,17 +110,6 @@ def draw_order(axes, name, uses, ranks, gradients):
         axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
 
 
-def blurred(texels):
-    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
-    rows = []
-    for row in texels:
-        padded = [row[0], *row, row[-1]]
-        rows.append(
-            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
-        )
-    return rows
-
-
 def draw_worked_graph(axes, nodes):
     """(x + y) z, with values, gradients and local derivatives."""
     at = {"x": (0.9, 0.45), "y": (0.9, 1.65), "+": (2.6, 1.05), "z": (2.6, 2.15), "×": (4.3, 1.55)}
@@ -140,19 +129,14 @@ def picture_and_gradients(module):
     start = np.full(target.shape, 0.45)
 
     def loss_of(numbers):
-        leaves = [[module.Value(t) for t in line] for line in numbers]
-        seen = blurred(leaves)
-        loss = module.Value(0.0)
-        for line, wanted in zip(seen, target, strict=True):
-            for value, want in zip(line, wanted, strict=True):
-                loss = loss + (value - float(want)) ** 2
-        return loss, leaves, seen
+        leaves = np.array([module.Value(t) for t in numbers.flat]).reshape(numbers.shape)
+        padded = np.pad(leaves, ((0, 0), (1, 1)), "edge")
+        seen = 0.25 * padded[:, :-2] + 0.5 * padded[:, 1:-1] + 0.25 * padded[:, 2:]
+        return np.sum((seen - target) ** 2), leaves, seen
 
     loss, leaves, seen = loss_of(start)
     module.backward(loss)
-    by_pixel, by_texel = (
-        np.array([[v.grad for v in line] for line in each]) for each in (seen, leaves)
-    )
+    by_pixel, by_texel = (np.vectorize(lambda v: v.grad)(each) for each in (seen, leaves))
     after = start - 0.2 * by_texel
     step = np.zeros(start.shape)
     step[11, 8] = 1e-5

@@ -27,10 +27,10 @@ def fig1_images(module: ModuleType) -> tuple[Figure, Facts]:
         way[on], through = module.refract(way[on], (place[on] - center) / radius, 1.5)
         inside[on] ^= through
         touched |= on
-    glass = np.clip(_world(place, way), 0, 1).reshape(height, width, 3)
+    glass = np.clip(module.floor_and_sky(place, way), 0, 1).reshape(height, width, 3)
     blue = (glass[..., 2] - glass[..., 0]).reshape(2, -1)
     upper, lower = (blue[k, half].mean() for k, half in enumerate(touched.reshape(2, -1)))
-    ring, across, down = _ring(24, 12), 120, 86
+    ring, across, down = module.ring(24, 12), 120, 86
     origins, ways = _ring_rays(module, across, down, 80.0)
     t, number = module.trace_mesh(ring, origins, ways)
     a, b, c = np.moveaxis(ring, 1, 0)
@@ -49,17 +49,6 @@ def fig1_images(module: ModuleType) -> tuple[Figure, Facts]:
     left.set(xticks=[], yticks=[], title="a ball of glass")
     right.set(xticks=[], yticks=[], title=f"{len(ring)} triangles")
     return figure, facts
-
-
-def _world(origins: Array, ways: Array) -> Array:
-    """Colors (R, 3) of a checkered floor and of the sky."""
-    down = ways[:, 1] < -1e-6
-    t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
-    x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
-    floor = np.where(((x + z) % 2 == 0)[:, None], (0.85, 0.45, 0.2), (0.95, 0.95, 0.9))
-    fade = np.exp(-t / 25)[:, None]
-    sky = np.stack([0.5 - 0.3 * ways[:, 1], 0.7 - 0.2 * ways[:, 1], np.ones(len(ways))], axis=1)
-    return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
 
 
 def _ring_rays(module: ModuleType, width: int, height: int, focal: float) -> tuple[Array, Array]:
@@ -178,9 +167,9 @@ def fig4_tree(module: ModuleType) -> tuple[Figure, Facts]:
     """Boxes tested for each pixel; boxes by the number of triangles."""
     width, height = 90, 54
     origins, ways = _ring_rays(module, width, height, 52.0)
-    counts, depth = _asked(module, _ring(16, 8), origins, ways)
+    counts, depth = _asked(module, module.ring(16, 8), origins, ways)
     every = [
-        module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
+        module.hit_triangle(o, d, module.ring(16, 8))[0].min(initial=np.inf)
         for o, d in zip(origins[::23], ways[::23], strict=True)
     ]
     hits = np.isfinite(depth)
@@ -188,7 +177,7 @@ def fig4_tree(module: ModuleType) -> tuple[Figure, Facts]:
     chosen = np.flatnonzero(hits)[::32]
     for turns in (8, 16, 32, 64):
         sizes.append(turns * turns)
-        found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
+        found, _ = _asked(module, module.ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
         "the hits are those of testing every triangle": Fact(
@@ -253,19 +242,6 @@ def _from_a_corner(origins: Array, ways: Array, corners: Array) -> Array:
     whole = np.sum((b - a) * p, axis=2)
     u, v = np.sum((origin - a) * p, axis=2) / whole, np.sum(way * q, axis=2) / whole
     return (u >= 0) & (v >= 0) & (u + v <= 1)
-
-
-def _ring(turns: int, sides: int) -> Array:
-    """Triangles (2 turns sides, 3, 3) of a ring around y."""
-    turn = 2 * np.pi * np.arange(turns) / turns
-    across = 2 * np.pi * np.arange(sides) / sides
-    far = 2 + 0.75 * np.cos(across)
-    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
-    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
-    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
-    c = np.roll(b, -1, axis=0)
-    both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
-    return both.reshape(-1, 3, 3)
 
 
 def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> tuple[Array, Array]:
