@@ -226,17 +226,8 @@ def fig4_two_valleys(module):
     for axes, (title, *walks) in zip(panels, shown, strict=True):
         axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
         for x, color, mark, label in walks:
-            axes.plot(
-                x,
-                [f(each) for each in x],
-                f"{mark}-",
-                color=color,
-                ms=4,
-                lw=0.8,
-                label=label,
-                mec="white",
-                mew=0.5,
-            )
+            look = {"color": color, "ms": 4, "lw": 0.8, "mec": "white", "mew": 0.5}
+            axes.plot(x, [f(each) for each in x], f"{mark}-", label=label, **look)
         axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
         axes.set_title(title)
         axes.legend(loc="upper center")
@@ -285,15 +276,8 @@ def fig5_adam(module):
     _bowl(a, "iterates")
     a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
     a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
-    a.plot(
-        *walks[1000.0][:80:6].T,
-        "D",
-        color=PURPLE,
-        ms=5,
-        mfc="none",
-        mew=0.9,
-        label="Adam, gradient times 1000",
-    )
+    scaled = walks[1000.0][:80:6]
+    a.plot(*scaled.T, "D", color=PURPLE, ms=5, mfc="none", label="Adam, gradient × 1000")
     a.set_ylabel("steep coordinate")
     a.legend(loc="lower right")
     b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")

@@ -88,14 +88,8 @@ HINGES, STEPS, LENGTH = 8, 200, 0.35
 xs = np.linspace(-1, 1, 21)
 ys = np.sin(3 * xs) * 0.5
 rng = np.random.default_rng(2)
-parameters = np.concatenate(
-    [
-        rng.choice([-1.0, 1.0], HINGES),
-        rng.uniform(-0.8, 0.8, HINGES),
-        rng.normal(0, 0.3, HINGES),
-        [0.0],
-    ]
-)
+weights, offsets = rng.choice([-1.0, 1.0], HINGES), rng.uniform(-0.8, 0.8, HINGES)
+parameters = np.concatenate([weights, offsets, rng.normal(0, 0.3, HINGES), [0.0]])
 
 
 def network(p, x):
