@@ -19,7 +19,7 @@ print(f"after one step of 600: {loss(picture - 600 * gradient, photograph):.4f}"
 figure = Figure(figsize=(9, 2.8), layout="constrained")
 top = np.abs(gradient).max()
 panels = [
-    ("picture", picture, {"cmap": "gray", "vmin": 0, "vmax": 1}),
+    ("image", picture, {"cmap": "gray", "vmin": 0, "vmax": 1}),
     ("photograph", photograph, {"cmap": "gray", "vmin": 0, "vmax": 1}),
     ("dL/dpicture", gradient, {"cmap": "RdBu_r", "vmin": -top, "vmax": top}),
 ]

@@ -9,15 +9,13 @@ from matplotlib.figure import Figure
 from photograd_course.viz.handout import Fact, figures_of
 from photograd_course.viz.style import signed_color_map
 
-DPI = 160
-
 
 def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
     """An image, the photograph, and the derivative of the loss with respect to each pixel."""
-    rows, columns = np.mgrid[0:36, 0:48]
-    photograph = np.exp(-((columns - 30.0) ** 2 + (rows - 17.0) ** 2) / 90.0)
-    picture = np.exp(-((columns - 19.0) ** 2 + (rows - 20.0) ** 2) / 90.0)
-    far = np.hypot(columns - 24, rows - 18) > 22
+    rows, columns = np.mgrid[0:54, 0:72]
+    photograph = np.exp(-((columns - 45.0) ** 2 + (rows - 25.5) ** 2) / 200.0)
+    picture = np.exp(-((columns - 28.5) ** 2 + (rows - 30.0) ** 2) / 200.0)
+    far = np.hypot(columns - 36, rows - 27) > 33
     photograph[far] = picture[far] = 0.0
     gradient = module.loss_gradient(picture, photograph)
     bright, dark = picture > photograph, picture < photograph
@@ -30,10 +28,10 @@ def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
 
 
 def _draw(picture: np.ndarray, photograph: np.ndarray, gradient: np.ndarray) -> Figure:
-    figure = Figure(figsize=(6.4, 1.95), layout="constrained")
+    figure = Figure(figsize=(7.0, 2.2), layout="constrained")
     top = float(np.abs(gradient).max())
     panels = [
-        ("picture p", picture, "gray", 0.0, 1.0),
+        ("image p", picture, "gray", 0.0, 1.0),
         ("photograph q", photograph, "gray", 0.0, 1.0),
         (r"$\partial L\,/\,\partial p$", gradient, signed_color_map(), -top, top),
     ]

@@ -17,6 +17,12 @@ def last_point(reference, curvature, reach, start, steps):
     return float(points[-1])
 
 
+def first_broken_step(reference, tau, beta2):
+    """The first step of Adam without the second bias correction; eps is too small to matter."""
+    del reference
+    return tau / math.sqrt(1.0 - beta2)
+
+
 def largest_stable_step(reference, a, b, c):
     """2 / lambda_max of the Hessian [[a, b], [b, c]]."""
     del reference

@@ -64,7 +64,7 @@ def gd_1d(
     for k in range(n):
         x[k + 1] = x[k] - tau * df(float(x[k]))
     loss = np.array([f(float(each)) for each in x])
-    return x, loss, not loss[n] <= loss[0]
+    return x, loss, not loss[-1] <= loss[0]
     # <<< solution
 
 

@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Assignment 01, experiments
+# # Gradient descent, experiments
 #
 # Nothing here is graded. Each cell uses your own `descent.py`; a cell whose function is not written
 # yet stops with the name of the task. Change numbers, run again. The whole script takes seconds.
@@ -19,8 +19,12 @@ OUT = Path("explore")
 OUT.mkdir(exist_ok=True)
 
 
-def keep(name):
-    """Save the current figure, and show it in a notebook."""
+def keep(name, xlabel="", ylabel="", legend=False):
+    """Label and save the current figure, and show it in a notebook."""
+    plt.xlabel(xlabel)
+    plt.ylabel(ylabel)
+    if legend:
+        plt.legend()
     plt.tight_layout()
     plt.savefig(OUT / f"{name}.png", dpi=110)
     plt.show() if "get_ipython" in globals() else plt.close()
@@ -33,14 +37,9 @@ def keep(name):
 # %%
 eps = 10.0 ** np.arange(-13.0, 0.0, 0.5)
 point = np.array([0.7])
-error = [
-    abs(descent.numeric_derivative(lambda y: float(np.sin(y[0])), point, e)[0] - np.cos(0.7))
-    for e in eps
-]
-plt.loglog(eps, error, "o-")
-plt.xlabel("eps")
-plt.ylabel("error")
-keep("differences")
+found = [descent.numeric_derivative(lambda y: float(np.sin(y[0])), point, e)[0] for e in eps]
+plt.loglog(eps, np.abs(np.array(found) - np.cos(0.7)), "o-")
+keep("differences", "eps", "error")
 
 # %% [markdown]
 # ## 2. Two local minima
@@ -70,26 +69,23 @@ for row, tau in enumerate(taus):
     print(f"tau = {tau}: {borders} borders, {np.count_nonzero(~np.isfinite(ends))} starts diverge")
 plt.ylim(-0.6, len(taus) - 0.4)
 plt.yticks(range(len(taus)), [f"tau = {tau}" for tau in taus])
-plt.xlabel("start; blue: ends on the left, orange: on the right")
-keep("basins")
+keep("basins", "start; blue: ends on the left, orange: on the right")
 
 # %% [markdown]
-# ## 3. Zig-zag
+# ## 3. Zig-zag, and momentum
 # A quadratic with condition number `kappa`. With the best learning rate the steep coordinate
-# changes sign in each step: how many are there until 1 % of the distance is left, and how many when
-# kappa doubles?
+# changes sign in each step: how many steps until 1 % of the distance is left, and how many when
+# kappa doubles? Momentum: try beta = 0.5, 0.7, 0.9, 0.97. Where does it begin to overshoot along
+# the valley?
 
 # %%
 kappa, start, n = 30.0, np.array([-2.0, 0.4]), 60
-hessian = np.array([1.0, kappa])
 
 
-def bowl(x):
-    return float(0.5 * x @ (hessian * x))
-
-
-def slope(x):
-    return hessian * x
+def quadratic(steep):
+    """f and its gradient, with curvatures 1 and `steep`."""
+    bends = np.array([1.0, steep])
+    return lambda x: float(0.5 * x @ (bends * x)), lambda x: bends * x
 
 
 def contours(walks, name):
@@ -98,40 +94,25 @@ def contours(walks, name):
     plt.contour(x, y, 0.5 * (x**2 + kappa * y**2), levels=np.geomspace(0.02, 15, 10), colors="0.8")
     for label, walk in walks.items():
         plt.plot(*walk.T, "o-", ms=3, lw=1, label=label)
-    plt.xlim(-2.3, 1.0)
-    plt.ylim(-1.0, 1.0)
-    plt.legend()
-    keep(name)
+    plt.axis((-2.3, 1.0, -1.0, 1.0))
+    keep(name, legend=True)
 
 
+bowl, slope = quadratic(kappa)
 best = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), n)[0]
 edge = descent.gd_nd(bowl, slope, start, 1.98 / kappa, n)[0]
 contours({"best learning rate": best, "near the bound": edge}, "zigzag")
-
 for steep in (kappa, 2.0 * kappa, 4.0 * kappa):
-    bends = np.array([1.0, steep])
-    walk = descent.gd_nd(
-        lambda x, bends=bends: float(0.5 * x @ (bends * x)),
-        lambda x, bends=bends: bends * x,
-        start,
-        2.0 / (1.0 + steep),
-        int(5.0 * steep),
-    )[0]
+    walk = descent.gd_nd(*quadratic(steep), start, 2.0 / (1.0 + steep), int(5.0 * steep))[0]
     left = np.linalg.norm(walk, axis=1) / np.linalg.norm(start)
     print(f"kappa = {steep:g}: {np.argmax(left < 0.01)} steps until 1 % is left")
-
-# %% [markdown]
-# ## 4. Momentum
-# Try beta = 0.5, 0.7, 0.9, 0.97. Where does it begin to overshoot along the valley?
-
-# %%
 contours(
     {f"beta = {beta}": descent.momentum(slope, start, 1.0 / kappa, beta, n) for beta in (0.5, 0.9)},
     "momentum",
 )
 
 # %% [markdown]
-# ## 5. Adam
+# ## 4. Adam
 # Gradient descent with the best learning rate is ahead on this quadratic nearly all the way: the
 # advantage of Adam is that 2 / (1 + kappa) need not be known. Rotate the quadratic by 45 degrees:
 # gradient descent behaves the same, and Adam is far slower at first. Why? Try other values of tau
@@ -139,24 +120,17 @@ contours(
 
 # %%
 turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
-
-
-def turned(x):
-    return turn @ (hessian * (turn.T @ x))
-
-
-for label, grad, x0 in (("Adam", slope, start), ("Adam, rotated", turned, turn @ start)):
-    walk = descent.adam(grad, x0, 0.05, 300)
-    plt.semilogy(np.linalg.norm(walk, axis=1), label=label)
 plain = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), 300)[0]
-plt.semilogy(np.linalg.norm(plain, axis=1), label="gradient descent, best learning rate")
-plt.xlabel("step")
-plt.ylabel("distance")
-plt.legend()
-keep("adam")
+for label, walk in (
+    ("Adam", descent.adam(slope, start, 0.05, 300)),
+    ("Adam, rotated", descent.adam(lambda x: turn @ slope(turn.T @ x), turn @ start, 0.05, 300)),
+    ("gradient descent, best learning rate", plain),
+):
+    plt.semilogy(np.linalg.norm(walk, axis=1), label=label)
+keep("adam", "step", "distance", legend=True)
 
 # %% [markdown]
-# ## 6. Backtracking line search
+# ## 5. Backtracking line search
 # Rosenbrock's function: no constant learning rate is right everywhere. Which step sizes does the
 # line search choose?
 
@@ -180,7 +154,5 @@ for _ in range(300):
     x = x + d * tau
     chosen.append(tau)
 plt.semilogy(chosen, ".")
-plt.xlabel("step")
-plt.ylabel("tau")
 plt.title(f"ends at ({x[0]:.4f}, {x[1]:.4f})")
-keep("line_search")
+keep("line_search", "step", "tau")

@@ -5,193 +5,38 @@
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
-from photograd_course.viz import style
-from photograd_course.viz.handout import Fact, figures_of
+from photograd_course.viz.handout import Fact, figures_of, subplots
+from photograd_course.viz.style import BLUE, GRAY, GUIDE, INK, ORANGE, plain_axes
+from photograd_course.viz.style import RED as CRIMSON
 
 PURPLE = "#542788"
-BLUE, RED_, ORANGE, GRAY, INK = style.BLUE, style.RED, style.ORANGE, style.GRAY, style.INK
+BOWL = np.array([1.0, 20.0])  # curvatures: condition number 20
+START = np.array([-2.0, 0.55])
 
 
-def _panels(widths, height, *, gap=0.75, left=0.66, top=0.34, bottom=0.48, right=0.16):
-    """A figure with panels of the given widths in inches side by side."""
-    total = left + sum(widths) + gap * (len(widths) - 1) + right
-    figure = style.new_figure(total, top + height + bottom)
-    figure.set_dpi(style.HANDOUT_DPI)
-    axes, at = [], left
-    for width in widths:
-        axes.append(style.place_axes(figure, at, top, width, height))
-        at += width + gap
-    for each in axes:
-        each.spines[["top", "right"]].set_visible(False)
-    return figure, axes
+def _panels(height, *widths):
+    """A figure, and its panels of relative widths side by side."""
+    figure, panels = subplots(7.0, height, 1, len(widths), width_ratios=widths, squeeze=False)
+    for each in panels[0]:
+        plain_axes(each)
+    return figure, panels[0]
+
+
+def _bowl(axes, title):
+    """Contours of the quadratic of Figures 1 and 5, and its minimum."""
+    x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
+    level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
+    axes.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
+    axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
+    axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", title=title)
+    axes.grid(visible=False)
 
 
 def _slope(x, y):
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
 
 
-def fig1_two_errors(module):
-    """Error of finite differences against eps."""
-    points = np.linspace(0.3, 1.1, 9)  # the mean over these averages rounding errors
-    eps = 10.0 ** np.arange(-13.0, -0.4, 0.25)
-
-    def values(y):
-        return float(np.exp(y[0]))
-
-    def error(quotient):
-        off = [[quotient(x, float(e)) / np.exp(x) - 1.0 for e in eps] for x in points]
-        return np.sqrt(np.mean(np.square(off), axis=0))
-
-    central = error(lambda x, e: module.numeric_derivative(values, np.array([x]), e)[0])
-    forward = error(lambda x, e: (np.exp(x + e) - np.exp(x)) / e)
-    wide, narrow = eps >= 1e-3, eps <= 1e-8
-    best = float(eps[np.argmin(central)])
-    facts = {
-        "central differences have slope 2": Fact(
-            _slope(eps[wide], central[wide]), 1.9, 2.1, red="forward_difference"
-        ),
-        "forward differences have slope 1": Fact(
-            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="computed here"
-        ),
-        "below 1e-8 the error grows as 1/eps": Fact(
-            _slope(eps[narrow], central[narrow]), -1.3, -0.7, red="missing_half"
-        ),
-        "central ones are best near 1e-5": Fact(np.log10(best), -6.5, -4.0, red="five_point"),
-        "there they are a hundred times better": Fact(
-            forward.min() / central.min(), 100.0, 1e6, red="forward_difference"
-        ),
-    }
-    figure, (axes,) = _panels([5.2], 2.9)
-    axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
-    axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
-    guide = np.array([3e-4, 3e-1])
-    axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
-    axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
-    axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
-    axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
-    axes.annotate("rounding error: slope -1", (3e-11, 2e-4), color=style.GUIDE)
-    axes.set(xlabel="step eps", ylabel="relative error", ylim=(1e-13, 1.0))
-    axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
-    axes.legend(loc="lower left")
-    axes.grid(visible=True)
-    return figure, facts
-
-
-def fig2_step_lengths(module):
-    """A parabola: distance to the minimum for five learning rates."""
-    n = 24
-    reaches = (0.2, 1.0, 1.8, 2.0, 2.1)
-    walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
-    x = {r: walk[0] for r, walk in walks.items()}
-    facts = {
-        "at 0.2 the points stay on one side": Fact((x[0.2] > 0.0).all(), red="no_tau"),
-        "at 0.2 the distance falls": Fact((np.diff(np.abs(x[0.2])) < 0.0).all(), red="uphill"),
-        "at 1 the first step reaches the minimum": Fact(x[1.0][1] == 0.0, red="uphill"),
-        "at 1.8 the sides alternate": Fact(
-            (x[1.8][1:] * x[1.8][:-1] < 0.0).all(), red="stale_gradient"
-        ),
-        "0.2 and 1.8 are equally fast": Fact(
-            np.abs(x[1.8][-1] / x[0.2][-1]), 0.999, 1.001, red="clipped_step"
-        ),
-        "at 2 the distance stays 1": Fact((np.abs(x[2.0]) == 1.0).all(), red="clipped_step"),
-        "at 2.1 it has grown tenfold": Fact(np.abs(x[2.1][-1]), 9.0, 11.0, red="clipped_step"),
-        "only 2.1 is flagged as wrong": Fact(
-            [w[2] for w in walks.values()] == [False] * 4 + [True], red="clipped_step"
-        ),
-    }
-    figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
-    steps = np.arange(n + 1)
-    looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
-    for r, (color, mark) in looks.items():
-        size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
-        left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
-        right.semilogy(
-            steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
-        )
-    left.axhline(0.0, color=GRAY, lw=0.8)
-    left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
-    left.set_title("points")
-    right.set(xlabel="step k", ylim=(2e-3, 60))
-    right.set_title("distance to the minimum")
-    right.legend(
-        title="tau lambda", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2
-    )
-    for axes in (left, right):
-        axes.grid(visible=True)
-        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
-    return figure, facts
-
-
-def fig3_two_valleys(module):
-    """A function with two minima: start and learning rate decide."""
-
-    def f(x):
-        return float((np.float64(x) * x - 1.0) ** 2 + 0.2 * x)
-
-    def df(x):
-        return float(4.0 * np.float64(x) * (x * x - 1.0) + 0.2)
-
-    left_end, hump, right_end = np.sort(np.roots([4.0, 0.0, -4.0, 0.2]).real)
-    short_left = module.gd_1d(f, df, 0.0, 0.05, 60)[0]
-    short_right = module.gd_1d(f, df, 0.1, 0.05, 60)[0]
-    long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
-    near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
-    facts = {
-        "from 0 the run ends on the left": Fact(
-            short_left[-1] - left_end, -1e-6, 1e-6, red="uphill"
-        ),
-        "from 0.1 it ends on the right": Fact(
-            short_right[-1] - right_end, -1e-6, 1e-6, red="uphill"
-        ),
-        "the local maximum lies between 0 and 0.1": Fact(
-            hump, 0.0, 0.1, held="a root of the derivative"
-        ),
-        "the run from 0 ends lower": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
-        "from 1.7 with 0.05 it ends on the right": Fact(
-            near[-1] - right_end, -1e-6, 1e-6, red="no_tau"
-        ),
-        "from 1.7 with 0.15 the first step crosses the maximum": Fact(
-            long[1] < hump, red="clipped_step"
-        ),
-        "and ends on the left": Fact(long[-1] - left_end, -1e-6, 1e-6, red="stale_gradient"),
-    }
-    grid = np.linspace(-1.65, 1.8, 300)
-    figure, panels = _panels([2.7, 2.7], 2.5, gap=0.62)
-    shown = (
-        (
-            "small learning rate, tau = 0.05",
-            (short_left, BLUE, "o", "from 0"),
-            (short_right, ORANGE, "s", "from 0.1"),
-        ),
-        ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
-    )
-    for axes, (title, *walks) in zip(panels, shown, strict=True):
-        axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
-        for x, color, mark, label in walks:
-            axes.plot(
-                x,
-                [f(each) for each in x],
-                f"{mark}-",
-                color=color,
-                ms=4,
-                lw=0.8,
-                label=label,
-                mec="white",
-                mew=0.5,
-            )
-        axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
-        axes.set_title(title)
-        axes.legend(loc="upper center")
-        axes.grid(visible=True)
-    panels[0].set_ylabel("f(x)")
-    return figure, facts
-
-
-BOWL = np.array([1.0, 20.0])  # curvatures: condition number 20
-START = np.array([-2.0, 0.55])
-
-
-def fig4_zigzag(module):
+def fig1_zigzag(module):
     """An ill-conditioned quadratic: zig-zag, best learning rate, momentum."""
 
     def f(x):
@@ -230,20 +75,13 @@ def fig4_zigzag(module):
             held="follows from tau and beta",
         ),
     }
-    x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
-    level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
+    figure, (a, b, c) = _panels(2.9, 2.0, 2.0, 1.1)
     for axes, walk, color, mark, title in (
         (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
-        (b, ball, BLUE, "o", "momentum, beta = 0.403"),
+        (b, ball, BLUE, "o", "momentum, β = 0.403"),
     ):
-        axes.contour(
-            x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
-        )
+        _bowl(axes, title)
         axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
-        axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-        axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
-        axes.set_title(title)
     a.set_ylabel("steep coordinate")
     b.tick_params(labelleft=False)
     steps = np.arange(n + 1)
@@ -251,7 +89,149 @@ def fig4_zigzag(module):
     c.semilogy(steps, size["ball"], color=BLUE)
     c.set_title("distance")
     c.set_xlabel("step k")
-    c.grid(visible=True)
+    return figure, facts
+
+
+def fig2_two_errors(module):
+    """Error of finite differences against eps."""
+    points = np.linspace(0.3, 1.1, 9)  # the mean over these averages rounding errors
+    eps = 10.0 ** np.arange(-13.0, -0.4, 0.25)
+
+    def values(y):
+        return float(np.exp(y[0]))
+
+    def error(quotient):
+        off = [[quotient(x, float(e)) / np.exp(x) - 1.0 for e in eps] for x in points]
+        return np.sqrt(np.mean(np.square(off), axis=0))
+
+    central = error(lambda x, e: module.numeric_derivative(values, np.array([x]), e)[0])
+    forward = error(lambda x, e: (np.exp(x + e) - np.exp(x)) / e)
+    wide, narrow = eps >= 1e-3, eps <= 1e-8
+    best = float(eps[np.argmin(central)])
+    facts = {
+        "central differences have slope 2": Fact(
+            _slope(eps[wide], central[wide]), 1.9, 2.1, red="forward_difference"
+        ),
+        "forward differences have slope 1": Fact(
+            _slope(eps[wide], forward[wide]), 0.9, 1.1, held="computed here"
+        ),
+        "below 1e-8 the error grows as 1/eps": Fact(
+            _slope(eps[narrow], central[narrow]), -1.3, -0.7, red="missing_half"
+        ),
+        "central ones are best near 1e-5": Fact(np.log10(best), -6.5, -4.0, red="five_point"),
+        "there they are a hundred times better": Fact(
+            forward.min() / central.min(), 100.0, 1e6, red="forward_difference"
+        ),
+    }
+    figure, (axes,) = _panels(3.4, 1)
+    axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
+    axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
+    guide = np.array([3e-4, 3e-1])
+    axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
+    axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
+    axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=GUIDE)
+    axes.annotate("slope 1", (1.2e-4, 8e-3), color=GUIDE)
+    axes.annotate("rounding error: slope −1", (3e-11, 2e-4), color=GUIDE)
+    axes.set(xlabel="step ε", ylabel="relative error", ylim=(1e-13, 1.0))
+    axes.set_title("derivative of exp by finite differences, nine points between 0.3 and 1.1")
+    axes.legend(loc="lower left")
+    return figure, facts
+
+
+def fig3_step_lengths(module):
+    """A parabola: distance to the minimum for five learning rates."""
+    n = 24
+    reaches = (0.2, 1.0, 1.8, 2.0, 2.1)
+    walks = {r: module.gd_1d(lambda x: 0.5 * x * x, lambda x: x, 1.0, r, n) for r in reaches}
+    x = {r: walk[0] for r, walk in walks.items()}
+    facts = {
+        "at 0.2 the points stay on one side": Fact((x[0.2] > 0.0).all(), red="no_tau"),
+        "at 0.2 the distance falls": Fact((np.diff(np.abs(x[0.2])) < 0.0).all(), red="uphill"),
+        "at 1 the first step reaches the minimum": Fact(x[1.0][1] == 0.0, red="uphill"),
+        "at 1.8 the sides alternate": Fact(
+            (x[1.8][1:] * x[1.8][:-1] < 0.0).all(), red="stale_gradient"
+        ),
+        "0.2 and 1.8 are equally fast": Fact(
+            np.abs(x[1.8][-1] / x[0.2][-1]), 0.999, 1.001, red="clipped_step"
+        ),
+        "at 2 the distance stays 1": Fact((np.abs(x[2.0]) == 1.0).all(), red="clipped_step"),
+        "at 2.1 it has grown tenfold": Fact(np.abs(x[2.1][-1]), 9.0, 11.0, red="clipped_step"),
+        "only 2.1 is flagged as wrong": Fact(
+            [w[2] for w in walks.values()] == [False] * 4 + [True], red="clipped_step"
+        ),
+    }
+    figure, (left, right) = _panels(3.1, 2.6, 2.4)
+    steps = np.arange(n + 1)
+    looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (CRIMSON, "D")}
+    for r, (color, mark) in looks.items():
+        size = 5.5 if r == 0.2 else 3.2  # visible behind 1.8
+        left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
+        right.semilogy(
+            steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
+        )
+    left.axhline(0.0, color=GRAY, lw=0.8)
+    left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
+    left.set_title("points")
+    right.set(xlabel="step k", ylim=(2e-3, 60))
+    right.set_title("distance to the minimum")
+    right.legend(title="τ λ", ncols=4, loc="upper center", columnspacing=0.9, handlelength=1.2)
+    for axes in (left, right):
+        axes.xaxis.set_major_locator(MaxNLocator(nbins=5, integer=True))
+    return figure, facts
+
+
+def fig4_two_valleys(module):
+    """A function with two minima: start and learning rate decide."""
+
+    def f(x):
+        return float((np.float64(x) * x - 1.0) ** 2 + 0.2 * x)
+
+    def df(x):
+        return float(4.0 * np.float64(x) * (x * x - 1.0) + 0.2)
+
+    left_end, hump, right_end = np.sort(np.roots([4.0, 0.0, -4.0, 0.2]).real)
+    short_left = module.gd_1d(f, df, 0.0, 0.05, 60)[0]
+    short_right = module.gd_1d(f, df, 0.1, 0.05, 60)[0]
+    long = module.gd_1d(f, df, 1.7, 0.15, 60)[0]
+    near = module.gd_1d(f, df, 1.7, 0.05, 60)[0]
+    facts = {
+        "from 0 the run ends on the left": Fact(
+            short_left[-1] - left_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "from 0.1 it ends on the right": Fact(
+            short_right[-1] - right_end, -1e-6, 1e-6, red="uphill"
+        ),
+        "the local maximum lies between 0 and 0.1": Fact(
+            hump, 0.0, 0.1, held="a root of the derivative"
+        ),
+        "the run from 0 ends lower": Fact(f(short_left[-1]) < f(short_right[-1]), red="uphill"),
+        "from 1.7 with 0.05 it ends on the right": Fact(
+            near[-1] - right_end, -1e-6, 1e-6, red="no_tau"
+        ),
+        "from 1.7 with 0.15 the first step crosses the maximum": Fact(
+            long[1] < hump, red="clipped_step"
+        ),
+        "and ends on the left": Fact(long[-1] - left_end, -1e-6, 1e-6, red="stale_gradient"),
+    }
+    grid = np.linspace(-1.65, 1.8, 300)
+    figure, panels = _panels(3.1, 1, 1)
+    shown = (
+        (
+            "small learning rate, τ = 0.05",
+            (short_left, BLUE, "o", "from 0"),
+            (short_right, ORANGE, "s", "from 0.1"),
+        ),
+        ("start at 1.7", (near, ORANGE, "s", "τ = 0.05"), (long, BLUE, "o", "τ = 0.15")),
+    )
+    for axes, (title, *walks) in zip(panels, shown, strict=True):
+        axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
+        for x, color, mark, label in walks:
+            look = {"color": color, "ms": 4, "lw": 0.8, "mec": "white", "mew": 0.5}
+            axes.plot(x, [f(each) for each in x], f"{mark}-", label=label, **look)
+        axes.set(xlabel="x", xlim=(-1.7, 1.85), ylim=(-0.5, 4.4))
+        axes.set_title(title)
+        axes.legend(loc="upper center")
+        panels[0].set_ylabel("f(x)")
     return figure, facts
 
 
@@ -292,36 +272,23 @@ def fig5_adam(module):
             first[0] / first[1], 0.999, 1.001, red="shared_scale"
         ),
     }
-    x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
-    level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    figure, (a, b, c) = _panels([2.7, 1.6, 1.4], 2.2, gap=0.62)
-    a.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
+    figure, (a, b, c) = _panels(2.8, 2.6, 1.5, 1.4)
+    _bowl(a, "iterates")
     a.plot(*plain[:13].T, "s-", color=ORANGE, ms=3, lw=0.9, label="gradient descent")
     a.plot(*walks[1.0][:80:2].T, "o-", color=BLUE, ms=3, lw=0.9, label="Adam, every 2nd point")
-    a.plot(
-        *walks[1000.0][:80:6].T,
-        "D",
-        color=PURPLE,
-        ms=5,
-        mfc="none",
-        mew=0.9,
-        label="Adam, gradient times 1000",
-    )
-    a.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-    a.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", ylabel="steep coordinate")
-    a.set_title("iterates")
+    scaled = walks[1000.0][:80:6]
+    a.plot(*scaled.T, "D", color=PURPLE, ms=5, mfc="none", label="Adam, gradient × 1000")
+    a.set_ylabel("steep coordinate")
     a.legend(loc="lower right")
     b.plot(lengths[1.0][:60, 0] / tau, color=BLUE, label="flat")
     b.plot(lengths[1.0][:60, 1] / tau, color=ORANGE, label="steep")
-    b.set(xlabel="step k", ylabel="step in one coordinate / tau", ylim=(0.0, 1.25))
+    b.set(xlabel="step k", ylabel="step in one coordinate / τ", ylim=(0.0, 1.25))
     b.set_title("steps of Adam")
     b.legend(loc="upper right")
     c.semilogy(size["Adam"], color=BLUE)
     c.semilogy(size["gradient descent"], color=ORANGE)
     c.set_title("distance")
     c.set_xlabel("step k")
-    for axes in (b, c):
-        axes.grid(visible=True)
     return figure, facts
 
 
@@ -365,8 +332,8 @@ def fig6_armijo(module):
         "with c = 1e-4 it would have taken 0.576": Fact(cheap, 0.5759, 0.5761, red="one_too_short"),
     }
     grid = np.linspace(0.0, 1.35, 300)
-    figure, (axes,) = _panels([5.2], 2.7)
-    axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
+    figure, (axes,) = _panels(3.2, 1)
+    axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + τ d)")
     axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
     axes.plot(grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001")
     shown = [t for t in tried if t < 1.35]
@@ -374,19 +341,18 @@ def fig6_armijo(module):
         shown[:-1],
         [along(t) for t in shown[:-1]],
         "X",
-        color=RED_,
+        color=CRIMSON,
         ms=8,
         mec="white",
         label="tried and rejected",
     )
     axes.plot(tau, along(tau), "o", color=BLUE, ms=8, mec="white", label="accepted")
     axes.set_title("tried: 1.6 (not drawn), 0.96, 0.576, 0.3456")
-    axes.set(xlabel="step size tau", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
+    axes.set(xlabel="step size τ", ylabel="f", xlim=(0.0, 1.35), ylim=(-1.2, 8.2))
     axes.legend(loc="upper center", ncols=2)
-    axes.grid(visible=True)
     return figure, facts
 
 
 FIGURES = figures_of(
-    fig1_two_errors, fig2_step_lengths, fig3_two_valleys, fig4_zigzag, fig5_adam, fig6_armijo
+    fig1_zigzag, fig2_two_errors, fig3_step_lengths, fig4_two_valleys, fig5_adam, fig6_armijo
 )

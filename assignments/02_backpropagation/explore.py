@@ -37,8 +37,8 @@ print("grad_check:", grad_check(lambda x: value_and_gradient(formula, x), place)
 #
 # The pixels of a small image are its texels, blurred. The derivative of the error with respect to
 # each texel has the shape of the image: blue where a texel should be increased, red where it should
-# be decreased. After many steps dark and bright edges appear: the engine finds the texels that look
-# right when blurred.
+# be decreased. (NumPy adds and multiplies `Value`s in arrays, too.) After many steps dark and
+# bright edges appear: the engine finds the texels that look right when blurred.
 
 # %%
 row, column = np.mgrid[0:12, 0:20]
@@ -48,26 +48,15 @@ heart = ((column - 9.5) / 6) ** 2 + (
 wanted = np.where(heart, 0.85, 0.15)
 
 
-def seen_through_blur(texels):
-    """Each texel with its neighbors to the left and right; numbers or Values."""
-    return [
-        [
-            0.25 * line[max(k - 1, 0)] + 0.5 * line[k] + 0.25 * line[min(k + 1, len(line) - 1)]
-            for k in range(len(line))
-        ]
-        for line in texels
-    ]
-
-
 def picture_loss(texels):
     """The squared error, and its derivative with respect to each texel."""
-    leaves = [[Value(number) for number in line] for line in texels]
-    total = Value(0.0)
-    for line, should in zip(seen_through_blur(leaves), wanted, strict=True):
-        for pixel, target in zip(line, should, strict=True):
-            total = total + (pixel - float(target)) ** 2
+    leaves = np.array([Value(number) for number in texels.flat]).reshape(texels.shape)
+    left, middle, right = (
+        np.pad(leaves, ((0, 0), (1, 1)), "edge")[:, k : k + 20] for k in range(3)
+    )
+    total = np.sum((0.25 * left + 0.5 * middle + 0.25 * right - wanted) ** 2)
     backward(total)
-    return total.data, np.array([[leaf.grad for leaf in line] for line in leaves])
+    return total.data, np.array([leaf.grad for leaf in leaves.flat]).reshape(texels.shape)
 
 
 texels = np.full(wanted.shape, 0.5)
@@ -99,14 +88,8 @@ HINGES, STEPS, LENGTH = 8, 200, 0.35
 xs = np.linspace(-1, 1, 21)
 ys = np.sin(3 * xs) * 0.5
 rng = np.random.default_rng(2)
-parameters = np.concatenate(
-    [
-        rng.choice([-1.0, 1.0], HINGES),
-        rng.uniform(-0.8, 0.8, HINGES),
-        rng.normal(0, 0.3, HINGES),
-        [0.0],
-    ]
-)
+weights, offsets = rng.choice([-1.0, 1.0], HINGES), rng.uniform(-0.8, 0.8, HINGES)
+parameters = np.concatenate([weights, offsets, rng.normal(0, 0.3, HINGES), [0.0]])
 
 
 def network(p, x):

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from matplotlib.patches import FancyArrowPatch
 from photograd_course.viz.style import BLUE, FRAME, INK, ORANGE, place_axes
 from photograd_course.viz.style import RED as DARK_RED
@@ -64,7 +65,7 @@ def key(axes, x, y):
     """Which number is which."""
     axes.text(x, y, "value", color=BLUE, fontsize=TEXT, fontweight="bold")
     axes.text(x, y + 0.22, "gradient", color=ORANGE, fontsize=TEXT, fontweight="bold")
-    axes.text(x, y + 0.44, "× slope", color=FRAME, fontsize=TEXT)
+    axes.text(x, y + 0.44, "× local derivative", color=FRAME, fontsize=TEXT)
 
 
 def slopes_of(user, source):
@@ -109,12 +110,44 @@ def draw_order(axes, name, uses, ranks, gradients):
         axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
 
 
-def blurred(texels):
-    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
-    rows = []
-    for row in texels:
-        padded = [row[0], *row, row[-1]]
-        rows.append(
-            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
-        )
-    return rows
+def draw_worked_graph(axes, nodes):
+    """(x + y) z, with values, gradients and local derivatives."""
+    at = {"x": (0.9, 0.45), "y": (0.9, 1.65), "+": (2.6, 1.05), "z": (2.6, 2.15), "×": (4.3, 1.55)}
+    for start, end in (("x", "+"), ("y", "+"), ("+", "×"), ("z", "×")):
+        slope = first_slope(nodes[end], nodes[start])
+        arrow(axes, at[start], at[end], f"× {slope:g}", lift=0.0)
+    for name, node in nodes.items():
+        circle(axes, at[name], name, f"{node.data:g}", f"{node.grad:g}")
+    key(axes, 5.0, 0.35)
+
+
+def picture_and_gradients(module):
+    """A gray image, its target, the derivatives of its error, and the image after a step."""
+    row, column = np.mgrid[0:24, 0:32]
+    dark = (row - 11.5) ** 2 + (column - 15.5) ** 2 < 68
+    target = 0.2 + 0.6 * dark
+    start = np.full(target.shape, 0.45)
+
+    def loss_of(numbers):
+        leaves = np.array([module.Value(t) for t in numbers.flat]).reshape(numbers.shape)
+        padded = np.pad(leaves, ((0, 0), (1, 1)), "edge")
+        seen = 0.25 * padded[:, :-2] + 0.5 * padded[:, 1:-1] + 0.25 * padded[:, 2:]
+        return np.sum((seen - target) ** 2), leaves, seen
+
+    loss, leaves, seen = loss_of(start)
+    module.backward(loss)
+    by_pixel, by_texel = (np.vectorize(lambda v: v.grad)(each) for each in (seen, leaves))
+    after = start - 0.2 * by_texel
+    step = np.zeros(start.shape)
+    step[11, 8] = 1e-5
+    slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
+    return {
+        "start": start,
+        "target": target,
+        "dark": dark,
+        "by_pixel": by_pixel,
+        "by_texel": by_texel,
+        "after": after,
+        "checked": by_texel[11, 8] / slope,
+        "fall": loss_of(after)[0].data / loss.data,
+    }

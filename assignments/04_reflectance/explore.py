@@ -15,31 +15,21 @@ from matplotlib.figure import Figure
 from photograd_course.explore import option
 
 pixels, steps = option("pixels", 64), option("steps", 60)
-rough, metal_share, start = (
-    option("roughness", 0.35),
-    option("metalness", 0.0),
-    option("start", 0.7),
-)
+rough, metal_share = option("roughness", 0.35), option("metalness", 0.0)
+start = option("start", 0.7)
 COLOR = np.array([0.75, 0.3, 0.1])
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
 
 # %% [markdown]
 # ## A ball
-# Seen from far away; every pixel has its own shading frame, in which the normal is +z.
 
 
 # %%
 def ball(size):
     """Mask (size, size) of the ball's pixels; for these wo (N, 3), and wi for each light."""
-    x = (np.arange(size) + 0.5) / size * 2.04 - 1.02
-    right, up = np.meshgrid(x, -x)
-    seen = right**2 + up**2 < 0.998
-    normal = np.stack([right, up, np.sqrt(np.maximum(1 - right**2 - up**2, 0))], axis=-1)[seen]
-    tangent = np.cross([0.0, 1.0, 0.0], normal)
-    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    seen, frame = mine.ball(size)
     lights = [frame @ (np.array(place) / np.linalg.norm(place)) for place, _ in LIGHTS]
-    return seen, frame @ np.array([0.0, 0.0, 1.0]), lights
+    return seen, frame[:, :, 2], lights
 
 
 def picture(scene, color, m, r, material):
@@ -138,15 +128,15 @@ for row, m in enumerate((0.0, 1.0)):
         axes.set(xticks=[], yticks=[])
         axes.set_title(f"roughness {r:g}" if row == 0 else "", fontsize=9)
         axes.set_ylabel(f"metalness {m:g}" if column == 0 else "")
-axes = figure.add_subplot(grid[2, 0])
-axes.imshow(screen(target, scene[0]))
-axes.set(xticks=[], yticks=[], title="the ball")
-axes = figure.add_subplot(grid[2, 1])
 field = np.full(scene[0].shape, np.nan)
 field[scene[0]] = pulled(scene, COLOR, metal_share, rough, np.ones_like(target) / 3)[3]
 top = np.nanquantile(np.abs(field), 0.99)
-axes.imshow(field, cmap="RdBu_r", vmin=-top, vmax=top)
-axes.set(xticks=[], yticks=[], title="∂ / ∂ roughness")
+for k, (image, title) in enumerate(
+    ((screen(target, scene[0]), "the ball"), (field, "∂ / ∂ roughness"))
+):
+    axes = figure.add_subplot(grid[2, k])
+    axes.imshow(image, cmap="RdBu_r", vmin=-top, vmax=top)
+    axes.set(xticks=[], yticks=[], title=title)
 axes = figure.add_subplot(grid[2, 2:4])
 for k, name in enumerate(("red", "green", "blue")):
     axes.plot(trail[:, k], color=name, linewidth=1, label=name)
@@ -160,7 +150,6 @@ angle = np.radians(np.linspace(-89, 89, 179))
 wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
 wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(wo), 1))
 axes.semilogy(np.degrees(angle), mine.ggx_lobe(wo, wi, np.full(len(wo), rough)))
-axes.set_title("lobe, light from −45°", fontsize=9)
-axes.set(xlabel="viewer, degrees")
+axes.set(xlabel="viewer, degrees", title="lobe, light from −45°")
 figure.savefig("reflectance.png", dpi=100)
 print("reflectance.png: chart, derivative with respect to roughness, fit, lobe")

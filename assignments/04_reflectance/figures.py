@@ -1,9 +1,11 @@
 """The figures of assignment 04, and the facts that their captions claim.
 
-`module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
+`module` is the solution or a mutant of it.
 """
 
+import figure_parts as parts
 import numpy as np
+from figure_parts import arrow, toward
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
@@ -11,23 +13,79 @@ from photograd_course.viz.handout import Fact, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
-LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
+
+def fig1_chart(module):
+    """Balls of the material: roughness to the right, metalness downward."""
+    color = np.array([0.9, 0.45, 0.12])
+    roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
+    size = 139
+    balls = {(m, r): parts.ball(module, size, color, m, r) for m in metals for r in roughs}
+    peak = {
+        key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
+        for key, ball in balls.items()
+    }
+    off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
+    gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
+    falls = [peak[1.0, r].max() for r in roughs]
+    facts = {
+        "each pixel of half metal is the mean of those above and below": Fact(
+            np.max(off), 0, 1e-12, red="gltf_premixed"
+        ),
+        "the metal's highlight has the base color": Fact(
+            np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
+        ),
+        "the coating's highlight is nearly white": Fact(
+            white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
+        ),
+        "the metal's highlight gets darker to the right": Fact(
+            (np.diff(falls) < 0).all(), red="lobe_no_masking"
+        ),
+    }
+    figure = Figure(figsize=(7.0, 4.15))
+    for row, m in enumerate(metals):
+        for column, r in enumerate(roughs):
+            axes = figure.add_axes((0.087 + column * 0.183, 0.645 - row * 0.32, 0.181, 0.31))
+            picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
+            # Fewer levels make a smaller file.
+            axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
+            axes.set_axis_off()
+            if row == 0:
+                axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
+        figure.text(0.008, 0.78 - row * 0.32, f"metalness\n{m:g}", fontsize=8)
+    return figure, facts
 
 
-def fig1_furnace(module):
+def fig2_solid_angle(module):
+    """Light at an angle to the surface; a cell of the hemisphere, and the disc below it."""
+    even = module.furnace(lambda _, wi: np.ones((len(wi), 1)), np.array([0.5]))[0, 0]
+    facts = {
+        "the solid angles of a hemisphere sum to 2 pi": Fact(
+            module.hemisphere()[1].sum() - 2 * np.pi, -1e-12, 1e-12, held="about given directions"
+        ),
+        "times their cosines they sum to pi, the area of the disc": Fact(
+            even - np.pi, -1e-12, 1e-12, red="furnace_no_cosine"
+        ),
+    }
+    figure, (left, right) = subplots(7.0, 2.4, 1, 2, width_ratios=(3.8, 2.8))
+    parts.draw_light_at_an_angle(left)
+    parts.draw_solid_angle(right)
+    return figure, facts
+
+
+def fig3_furnace(module):
     """Directional albedo of white materials, by the cosine of the viewer."""
     cosines = np.concatenate([[0.02, 0.05], np.linspace(0.1, 1.0, 19)])
 
     def of(model, *given, cosines=cosines):
         return module.furnace(lambda wo, wi: model(wo, wi, *given), cosines)[:, 0]
 
-    mirrors = {r: module.furnace(_mirror(module, r), cosines)[:, 0] for r in (0.6, 0.8, 1.0)}
+    mirrors = {r: module.furnace(parts.mirror(module, r), cosines)[:, 0] for r in (0.6, 0.8, 1.0)}
     burley = {r: of(module.burley_diffuse, 1.0, r) for r in (0.3, 1.0)}
     with np.errstate(under="ignore"):
         printed, right = (
             of(module.cook_torrance, 1.0, 0.4, flag, cosines=cosines[2:]) for flag in (True, False)
         )
-    plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
+    plastic = module.furnace(parts.white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
     facts = {
         "microfacets of roughness 1 return 1 - ln 2 straight up": Fact(
             mirrors[1.0][-1] - 1 + np.log(2), -1e-9, 1e-9, red="lobe_printed"
@@ -78,55 +136,76 @@ def fig1_furnace(module):
     return figure, facts
 
 
-def fig2_lobes(module):
-    """Lobes of light from 45 degrees: Phong's, and GGX of increasing roughness."""
-    angle = np.radians(np.linspace(-89.5, 89.5, 359))
-    wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
-    wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(angle), 1))
-    with np.errstate(under="ignore"):
-        highlight = module.phong(wo, wi, 1.0, 40)[:, 0]
-    curves = {r: module.ggx_lobe(wo, wi, np.full(len(wo), r)) for r in (0.4, 0.6, 0.8, 1.0)}
-    height = curves[0.4].max()
-    with np.errstate(under="ignore"):
-        matched = highlight * (height / highlight.max())
-    away = np.isclose(np.abs(np.degrees(angle) - 45), 40)  # of the mirror direction
-    peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
+def fig4_facets(module):
+    """A half vector; what viewer and light see of a rough surface; a facet that turns."""
+    wo, wi = np.array([[np.sin(0.9), 0, np.cos(0.9)]]), np.array([[-0.6, 0, 0.8]])
+    shared = 4 * wo[0, 2] * wi[0, 2] * np.pi * module.ggx_lobe(wo, wi, np.ones(1))[0]
+    x = np.linspace(-1.2, 1.2, 1200)
+    z = parts.profile(x)
+    by_viewer, by_light = (parts.is_seen(x, z, toward(each)) for each in (55, -50))
+    both, one = by_viewer & by_light, by_viewer ^ by_light
+    o, turn = toward(50), 12.0
+    out = [parts.mirrored(o, toward(n)) for n in (0.0, -turn)]
     facts = {
-        "Phong's peak lies in the mirror direction": Fact(
-            np.degrees(angle[np.argmax(highlight)]), 44.4, 45.6, held="about a model that is given"
+        "w_h halves the angle": Fact(
+            abs(module.half_vector(wo, wi)[0] @ (wo - wi)[0]), 0, 1e-12, held="given code"
         ),
-        "at roughness 0.4 the peak lies within 3 degrees of it": Fact(
-            peaks[0.4], 44, 48, red="lobe_not_squared"
+        "both see fewer facets than the viewer alone": Fact(
+            shared * (1 + wo[0, 2]) / (2 * wo[0, 2]), 0.5, 0.95, red="lobe_no_masking"
         ),
-        "at roughness 0.6 it lies 11.5 degrees beyond": Fact(
-            peaks[0.6], 56.4, 56.6, red="lobe_no_roots"
+        "some are seen by both, some by one": Fact(
+            min(both.sum(), one.sum()), 100, 900, held="drawn here"
         ),
-        "at roughness 0.8 it is brightest from the horizon": Fact(
-            peaks[0.8], 89, 90, red="lobe_facets_stretched"
-        ),
-        "40 degrees away GGX has 1000 times Phong's light or more": Fact(
-            (curves[0.4][away] / matched[away]).min(), 1000, 1e6, red="lobe_beckmann"
+        "the reflected direction turns by twice the angle": Fact(
+            np.degrees(np.arccos(out[0] @ out[1])), 24 - 1e-6, 24 + 1e-6, held="drawn here"
         ),
     }
-    figure, panels = subplots(7.0, 2.9, 1, 2)
-    looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
-    degrees = np.degrees(angle)
-    for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
-        if r > 0.4:
-            panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
-    panels[0].set(title="GGX lobes", ylabel="D V [1/sr]", ylim=(0, 1.5))
-    panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
-    panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
-    panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
-    for axes in panels:
-        axes.axvline(45, color=FRAME, linewidth=0.7)
-        axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(loc="upper left", fontsize=7)
+    figure, panels = subplots(7.0, 2.1, 1, 3)
+    left, middle, right = panels
+    parts.draw_half_vector(left)
+    parts.draw_masking(middle, x, z, both, one)
+    parts.draw_turned_facet(right, o, turn)
     return figure, facts
 
 
-def fig3_samples(module):
+def fig5_cap(module):
+    """Visible normals of a squeezed hemisphere; the hemisphere; the cap of reflected directions."""
+    n, squeeze, z = 6000, 0.4, 0.5
+    v = np.array([np.sqrt(1 - z * z), z])
+    wo = np.tile([v[0], 0.0, z], (n, 1))
+    c = module.sample_ggx(wo, np.ones(n), np.random.default_rng(3).random((n, 2)))
+    heights = np.histogram(c[:, 2], np.linspace(-z, 1, 11))[0] / (n / 10)
+    facts = {
+        "reflected directions reach down to -v_z": Fact(
+            c[:, 2].min(), -z - 1e-9, -z + 0.01, red="sample_half_ball"
+        ),
+        "their heights are uniform": Fact(
+            np.abs(heights - 1).max(), 0, 0.15, red="sample_even_angles"
+        ),
+    }
+    figure, panels = subplots(7.0, 2.2, 1, 4, width_ratios=(2.8, 2.8, 2.8, 1.4))
+    o = parts.unit(v / [squeeze, 1])  # so that v is its stretched direction
+    parts.draw_visible_normals(panels[0], squeeze, o, "$w_o$")
+    parts.draw_visible_normals(panels[1], 1.0, v, "v")
+    parts.bare(panels[0], (-1.2, 1.6), (-1.05, 1.5), "facets")
+    parts.bare(panels[1], (-1.2, 1.6), (-1.05, 1.5), "hemisphere")
+    axes = panels[2]
+    turn = np.radians(np.linspace(0, 360, 181))
+    axes.plot(np.cos(turn), np.sin(turn), color=GRAY, linewidth=0.9)
+    axes.plot(*c[:700, [0, 2]].T, ".", color=ORANGE, markersize=2)
+    axes.plot([-1.2, 1.2], [-z, -z], color=INK, linewidth=0.8)
+    axes.text(0, -z - 0.24, "$c_z = -v_z$", ha="center")
+    arrow(axes, [0, 0], 1.25 * v, "v", CRIMSON)
+    parts.bare(axes, (-1.3, 1.5), (-1.05, 1.5), "cap")
+    axes = panels[3]
+    axes.barh(np.linspace(-z, 1, 21)[1::2], heights, 0.9 * (1 + z) / 10, color=ORANGE)
+    axes.set(ylim=(-1.05, 1.5), yticks=[-z, 0, 1], xticks=[0, 1], title="by height")
+    axes.set_yticklabels(["$-v_z$", "0", "1"])
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure, facts
+
+
+def fig6_samples(module):
     """Samples over their density, and weights of two samplers."""
     rng = np.random.default_rng(7)
     r, n = 0.6, 4000
@@ -137,10 +216,10 @@ def fig3_samples(module):
         panels_of.append((z, wo, wi))
         below.append(float((wi[:, 2] <= 0).mean()))
     z, wo, wi = panels_of[1]
-    weights = _weights(module, wo, wi, r, module.ggx_pdf(wo, wi, np.full(n, r)))
-    even = _even(rng, n)
-    plain = _weights(module, wo, even, r, np.full(n, 1 / (2 * np.pi)))
-    right = float(module.furnace(_mirror(module, r), np.array([z]))[0, 0])
+    weights = parts.weights(module, wo, wi, r, module.ggx_pdf(wo, wi, np.full(n, r)))
+    even = parts.even(rng, n)
+    plain = parts.weights(module, wo, even, r, np.full(n, 1 / (2 * np.pi)))
+    right = float(module.furnace(parts.mirror(module, r), np.array([z]))[0, 0])
     spread = weights.std() / np.sqrt(n)
     facts = {
         "no weight is above 1": Fact(weights.max(), 0.5, 1 + 1e-9, red="pdf_half"),
@@ -180,91 +259,12 @@ def fig3_samples(module):
     return figure, facts
 
 
-def fig4_blend(module):
-    """White of roughness 0.5, seen from 0.6: BRDFs blended, and f0 blended."""
-    metalness, view = np.linspace(0, 1, 11), np.array([0.6])
-
-    def premixed(m):
-        def f(wo, wi):
-            cos = np.sum(wo * module.half_vector(wo, wi), axis=1)
-            F = module.schlick((1 - m) * 0.04 + m, cos)
-            lobe = module.ggx_lobe(wo, wi, np.full(len(wo), 0.5))
-            return ((1 - m) * (1 - F) / np.pi + F * lobe)[:, None]
-
-        return f
-
-    blended = np.array([module.furnace(_white(module, m, 0.5), view)[0, 0] for m in metalness])
-    mixed = np.array([module.furnace(premixed(m), view)[0, 0] for m in metalness])
-    straight = blended[0] + metalness * (blended[-1] - blended[0])
-    facts = {
-        "blended, half metal returns 0.937": Fact(
-            blended[5], 0.9365, 0.9375, red="gltf_varnish_added"
-        ),
-        "premixed it returns 0.698": Fact(mixed[5], 0.6975, 0.6985, red="lobe_uncorrelated"),
-        "blended it is a straight line": Fact(
-            np.abs(blended - straight).max(), 0, 1e-12, red="gltf_premixed"
-        ),
-        "premixed it is darker than both ends": Fact(
-            mixed[5] / min(mixed[0], mixed[-1]), 0.5, 0.9, red="lobe_half"
-        ),
-    }
-    figure, axes = subplots(6.0, 2.7)
-    axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="BRDFs blended")
-    axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
-    axes.axhline(1, color=FRAME, linewidth=0.8)
-    axes.set(xlabel="metalness", ylabel="directional albedo", ylim=(0.6, 1.05))
-    axes.legend(loc="lower left", fontsize=7)
-    axes.spines[["top", "right"]].set_visible(False)
-    return figure, facts
-
-
-def fig5_chart(module):
-    """Balls of the material: roughness to the right, metalness downward."""
-    color = np.array([0.9, 0.45, 0.12])
-    roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
-    size = 124
-    balls = {(m, r): _ball(module, size, color, m, r) for m in metals for r in roughs}
-    peak = {
-        key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
-        for key, ball in balls.items()
-    }
-    off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
-    gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
-    falls = [peak[1.0, r].max() for r in roughs]
-    facts = {
-        "each pixel of half metal is the mean of those above and below": Fact(
-            np.max(off), 0, 1e-12, red="gltf_premixed"
-        ),
-        "the metal's highlight has the base color": Fact(
-            np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
-        ),
-        "the coating's highlight is nearly white": Fact(
-            white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
-        ),
-        "the metal's highlight gets darker to the right": Fact(
-            (np.diff(falls) < 0).all(), red="lobe_no_masking"
-        ),
-    }
-    figure = Figure(figsize=(7.0, 4.4))
-    for row, m in enumerate(metals):
-        for column, r in enumerate(roughs):
-            axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
-            picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
-            # Fewer levels make a smaller file.
-            axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
-            axes.set_axis_off()
-            if row == 0:
-                axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
-        figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
-    return figure, facts
-
-
-def fig6_by_roughness(module):
+def fig7_by_roughness(module):
     """A plastic ball, its derivative with respect to roughness, and a finite difference."""
     size, r, step = 150, 0.35, 0.02
     color = np.array([0.75, 0.12, 0.08])
-    inside, wo, frame = _frames(size)
-    wi = frame @ _unit(LIGHTS[0][0])
+    inside, frame = module.ball(size)
+    wo, wi = frame[:, :, 2], frame @ parts.unit(parts.LIGHTS[0][0])
     n = len(wo)
     given = np.tile(color, (n, 1)), np.zeros(n)
     cosine = np.pi * np.clip(wi[:, 2:], 0, None)
@@ -313,59 +313,12 @@ def fig6_by_roughness(module):
     return figure, facts
 
 
-def _mirror(module, r):
-    return lambda wo, wi: module.ggx_lobe(wo, wi, np.full(len(wo), r))[:, None]
-
-
-def _white(module, m, r):
-    def f(wo, wi):
-        n = len(wo)
-        return module.gltf(wo, wi, np.ones((n, 3)), np.full(n, m), np.full(n, r))
-
-    return f
-
-
-def _weights(module, wo, wi, r, pdf):
-    lobe = module.ggx_lobe(wo, wi, np.full(len(wo), r))
-    return np.where(pdf > 0, lobe * wi[:, 2] / np.where(pdf > 0, pdf, 1), 0)
-
-
-def _even(rng, n):
-    z, phi = rng.random(n), 2 * np.pi * rng.random(n)
-    s = np.sqrt(1 - z * z)
-    return np.stack([s * np.cos(phi), s * np.sin(phi), z], axis=1)
-
-
-def _unit(v):
-    return np.array(v) / np.linalg.norm(v)
-
-
-def _frames(size):
-    """A ball seen from +z: its mask, and for its pixels wo and the frames (N, 3, 3)."""
-    x = (np.arange(size) + 0.5) / size * 2.06 - 1.03
-    right, up = np.meshgrid(x, -x)
-    inside = right**2 + up**2 < 0.998
-    normal = np.stack([right, up, np.sqrt(np.maximum(1 - right**2 - up**2, 0))], axis=-1)[inside]
-    tangent = np.cross([0.0, 1.0, 0.0], normal)
-    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
-    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
-    return inside, frame @ np.array([0.0, 0.0, 1.0]), frame
-
-
-def _ball(module, size, color, m, r):
-    """Radiance (size, size, 3) of a ball under three lights; NaN beside it."""
-    inside, wo, frame = _frames(size)
-    n = len(wo)
-    total = 0
-    for place, strength in LIGHTS:
-        wi = frame @ _unit(place)
-        f = module.gltf(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r))
-        total = total + f * np.clip(wi[:, 2:], 0, None) * np.pi * strength
-    image = np.full((size, size, 3), np.nan)
-    image[inside] = total
-    return image
-
-
 FIGURES = figures_of(
-    fig1_furnace, fig2_lobes, fig3_samples, fig4_blend, fig5_chart, fig6_by_roughness
+    fig1_chart,
+    fig2_solid_angle,
+    fig3_furnace,
+    fig4_facets,
+    fig5_cap,
+    fig6_samples,
+    fig7_by_roughness,
 )

@@ -57,6 +57,23 @@ def hemisphere(heights=48, turns=96):
     return wi, np.repeat(root * weights * (2 * np.pi / turns), turns)
 
 
+def ball(size):
+    """A ball seen from far away: where it is in an image, and the frame of each of its pixels.
+
+    Returns:
+        a mask (size, size), and for its N pixels, row by row, matrices (N, 3, 3) that take
+        directions of the camera (x right, y up, z to the camera) into the frame of the surface.
+    """
+    x = (np.arange(size) + 0.5) / size * 2.06 - 1.03
+    right, up = np.meshgrid(x, -x)
+    inside = right**2 + up**2 < 0.998
+    z = np.sqrt(np.maximum(1 - right**2 - up**2, 0))
+    normal = np.stack([right, up, z], axis=-1)[inside]
+    tangent = np.cross([0.0, 1.0, 0.0], normal)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    return inside, np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+
+
 # Models to measure --------------------------------------------------------------------------------
 
 

@@ -34,20 +34,6 @@ origins, ways = mine.camera_rays(width, height, focal, focal, width / 2, height 
 
 
 # %%
-def ring(turns, sides):
-    """Triangles (2 turns sides, 3, 3) of a ring around y, coordinates that float32 has exactly."""
-    turn = 2 * np.pi * np.arange(turns) / turns
-    across = 2 * np.pi * np.arange(sides) / sides
-    far = 2 + 0.75 * np.cos(across)
-    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
-    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
-    a = a.astype(np.float32).astype(float)
-    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
-    c = np.roll(b, -1, axis=0)
-    halves = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
-    return halves.reshape(-1, 3, 3)
-
-
 def look(corners, origins, ways):
     """(t, triangle, tested boxes, tested triangles), each (R,), of rays."""
     boxes, first, many, order = mine.build_bvh(corners.min(axis=1), corners.max(axis=1))
@@ -68,7 +54,7 @@ def look(corners, origins, ways):
 
 
 turns = max(4, round(triangles**0.5 / 2) * 2)
-corners = ring(turns, max(3, triangles // (2 * turns)))
+corners = mine.ring(turns, max(3, triangles // (2 * turns)))
 before = time.perf_counter()
 t, number, asked, met = look(corners, origins, ways)
 seconds = time.perf_counter() - before
@@ -89,17 +75,6 @@ seen = np.where(number >= 0, 0.15 + 0.85 * np.abs(towards), 1.0)
 
 
 # %%
-def world(origins, ways):
-    """Colors (R, 3) of a checkered floor and of the sky."""
-    down = ways[:, 1] < -1e-6
-    t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
-    x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
-    floor = np.where(((x + z) % 2 == 0)[:, None], (0.85, 0.45, 0.2), (0.95, 0.95, 0.9))
-    fade = np.exp(-t / 25)[:, None]
-    sky = np.stack([0.5 - 0.3 * ways[:, 1], 0.7 - 0.2 * ways[:, 1], np.ones(len(ways))], axis=1)
-    return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
-
-
 center, radius = np.array([0.0, 0.3, 0.0]), 1.2
 level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
 place, way = mine.camera_rays(width, height, focal, focal, width / 2, height / 2, level)
@@ -110,7 +85,7 @@ for bounce in range(8):
     place[on] += t_ball[on, None] * way[on]
     way[on], through = mine.refract(way[on], (place[on] - center) / radius, eta)
     inside[on] ^= through
-glass = world(place, way)
+glass = mine.floor_and_sky(place, way)
 print(f"glass with eta {eta}: {inside.sum()} rays are still inside")
 
 # %% [markdown]

@@ -13,43 +13,56 @@ from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 
-def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
-    """Error of the hits of a small sphere from far away, by two formulas."""
-    rng = np.random.default_rng(1)
-    n, d = _units(rng, 200), _units(rng, 200)
-    d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
-    d /= np.linalg.norm(d, axis=1, keepdims=True)
-    away = 10.0 ** np.arange(9)
-    ours, quadratic, missed = [], [], []
-    for distance in away:
-        origins = n - distance * d
-        t = module.hit_sphere(origins, d, np.zeros(3), 1.0)
-        ours.append(_off(origins, d, np.where(np.isfinite(t), t, 0.0)))
-        b = np.sum(origins * d, axis=1)
-        rest = b**2 - (np.sum(origins**2, axis=1) - 1)
-        kept = rest >= 0
-        missed.append(1 - kept.mean())
-        quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
+def fig1_images(module: ModuleType) -> tuple[Figure, Facts]:
+    """A ball of glass over a floor, and a ring of triangles, by your functions."""
+    width, height, radius = 300, 216, 1.2
+    level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
+    center = np.array([0.0, 0.3, 0.0])
+    place, way = module.camera_rays(width, height, 210.0, 210.0, width / 2, height / 2, level)
+    inside, touched = np.zeros(len(way), bool), np.zeros(len(way), bool)
+    for bounce in range(4):
+        t = module.hit_sphere(place, way, center, radius)
+        on = np.isfinite(t) & (inside | (bounce == 0))
+        place[on] += t[on, None] * way[on]
+        way[on], through = module.refract(way[on], (place[on] - center) / radius, 1.5)
+        inside[on] ^= through
+        touched |= on
+    glass = np.clip(module.floor_and_sky(place, way), 0, 1).reshape(height, width, 3)
+    blue = (glass[..., 2] - glass[..., 0]).reshape(2, -1)
+    upper, lower = (blue[k, half].mean() for k, half in enumerate(touched.reshape(2, -1)))
+    ring, across, down = module.ring(24, 12), 120, 86
+    origins, ways = _ring_rays(module, across, down, 80.0)
+    t, number = module.trace_mesh(ring, origins, ways)
+    a, b, c = np.moveaxis(ring, 1, 0)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    shade = 0.15 + 0.85 * np.abs(np.sum(normal[number] * ways, axis=1))
+    shade[number < 0] = 1.0
     facts: Facts = {
-        "the quadratic is off by more than a centimeter from 1e7": Fact(quadratic[7], 1e-2, 10.0),
-        "from 1e8 by more than the radius": Fact(quadratic[8], 1.0, 1e3),
-        "from 1e8 it misses a tenth or more": Fact(missed[8], 0.1, 1.0),
-        "ours below 1e-7 at 1e8": Fact(ours[8], 0.0, 1e-7),
+        "every ray leaves the ball": Fact(not inside.any() and touched.any()),
+        "in the ball the sky is below": Fact(lower - upper, 0.2, 1.0),
+        "the ring is hit": Fact(np.isfinite(t).mean(), 0.2, 0.8),
     }
-    figure, axes = subplots(7.0, 2.9)
-    tiny = 1e-17
-    axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
-    axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
-    note(axes, "quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON)
-    note(axes, "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE)
-    axes.set(xlabel="distance of the origin  [radii]", ylabel="error of the hit  [radii]")
-    plain_axes(axes)
+    figure, (left, right) = subplots(7.0, 2.75, 1, 2)
+    left.imshow(np.round(glass * 40) / 40)
+    right.imshow(shade.reshape(down, across), cmap="gray", vmin=0, vmax=1)
+    left.set(xticks=[], yticks=[], title="a ball of glass")
+    right.set(xticks=[], yticks=[], title=f"{len(ring)} triangles")
     return figure, facts
+
+
+def _ring_rays(module: ModuleType, width: int, height: int, focal: float) -> tuple[Array, Array]:
+    """Rays of a camera above the ring that looks down."""
+    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
+    rays: tuple[Array, Array] = module.camera_rays(
+        width, height, focal, focal, width / 2, height / 2, pose
+    )
+    return rays
 
 
 def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     """Weights of two triangles; rays onto edges that miss all triangles."""
-    size = 36
+    size = 54
     y, x = (np.mgrid[:size, :size] + 0.5) / size
     square = np.array([[[0, 0, 1], [1, 0, 1], [1, 1, 1]], [[0, 0, 1], [1, 1, 1], [0, 1, 1.0]]])
     picture, sums = np.ones((size, size, 3)), []
@@ -95,49 +108,7 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
-    """Rays through a ball of glass; angle of refraction by angle of incidence."""
-    eta = 1.5
-    heights = np.concatenate([np.linspace(-0.9, 0.9, 13), [0.05]])
-    start = np.stack([np.full(14, -2.0), heights, np.zeros(14)], axis=1)
-    ways = np.tile([1.0, 0, 0], (14, 1))
-    t = module.hit_sphere(start, ways, np.zeros(3), 1.0)
-    first = start + _finite(t)[:, None] * ways
-    within, entered = module.refract(ways, first, eta)
-    t = module.hit_sphere(first, within, np.zeros(3), 1.0)
-    second = first + _finite(t)[:, None] * within
-    out, left_it = module.refract(within, second, eta)
-    crossing = second[:, 0] - second[:, 1] * _finite(out[:, 0] / out[:, 1])
-    angle = np.radians(np.linspace(0.5, 89.5, 179))
-    up = np.tile([0.0, 0, 1], (179, 1))
-    ins = np.stack([np.sin(angle), 0 * angle, -np.cos(angle)], axis=1)
-    outs = ins * [1, 1, -1]
-    (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
-    critical = np.degrees(angle[got_out].max(initial=0.0))
-    facts: Facts = {
-        "rays near the axis cross 1.5 radii behind the center": Fact(crossing[-1], 1.48, 1.5),
-        "the outer ones nearer": Fact(0.5 < crossing[0] < 1.2),
-        "all enter and leave": Fact(entered.all() and left_it.all()),
-        "nothing leaves beyond 41.8 degrees": Fact(critical, 41.3, 41.9),
-    }
-    figure, (left, right) = subplots(7.0, 2.9, 1, 2, width_ratios=(1.5, 1))
-    left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
-    for r in range(13):
-        path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
-        left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
-    left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
-    left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
-    degrees = np.degrees(angle)
-    right.plot(degrees, _angle(bent), color=BLUE)
-    right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
-    note(right, "into glass", (60, 35), (0, -14), color=BLUE)
-    note(right, "out of glass", (35, 60), (-52, 4), color=ORANGE)
-    right.set(xlabel="incidence  [°]", ylabel="refraction  [°]", xlim=(0, 90), ylim=(0, 90))
-    plain_axes(right)
-    return figure, facts
-
-
-def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
+def fig3_march(module: ModuleType) -> tuple[Figure, Facts]:
     """Sphere tracing of two rays; the derivative of t with respect to a radius."""
     asked: list[Array] = []
 
@@ -192,26 +163,25 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
+def fig4_tree(module: ModuleType) -> tuple[Figure, Facts]:
     """Boxes tested for each pixel; boxes by the number of triangles."""
-    width, height = 50, 30
-    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
-    origins, ways = module.camera_rays(width, height, 29.0, 29.0, width / 2, height / 2, pose)
-    counts, depth = _asked(module, _ring(16, 8), origins, ways)
+    width, height = 90, 54
+    origins, ways = _ring_rays(module, width, height, 52.0)
+    counts, depth = _asked(module, module.ring(16, 8), origins, ways)
     every = [
-        module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
-        for o, d in zip(origins[::7], ways[::7], strict=True)
+        module.hit_triangle(o, d, module.ring(16, 8))[0].min(initial=np.inf)
+        for o, d in zip(origins[::23], ways[::23], strict=True)
     ]
     hits = np.isfinite(depth)
     sizes, means = [], []
-    chosen = np.flatnonzero(hits)[::10]
+    chosen = np.flatnonzero(hits)[::32]
     for turns in (8, 16, 32, 64):
         sizes.append(turns * turns)
-        found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
+        found, _ = _asked(module, module.ring(turns, turns // 2), origins[chosen], ways[chosen])
         means.append(float(np.mean(found)))
     facts: Facts = {
         "the hits are those of testing every triangle": Fact(
-            np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
+            np.allclose(_finite(depth[::23]), _finite(np.array(every)), atol=1e-9)
         ),
         "a miss of the root tests one box": Fact(counts.min() == 1),
         "the most expensive pixel tests some 60": Fact(int(counts.max()), 45, 75),
@@ -231,18 +201,6 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
     right.minorticks_off()
     plain_axes(right)
     return figure, facts
-
-
-def _units(rng: np.random.Generator, count: int) -> Array:
-    v = rng.normal(size=(count, 3))
-    return v / np.linalg.norm(v, axis=1, keepdims=True)
-
-
-def _off(origins: Array, ways: Array, t: Array) -> float:
-    """Largest distance of a point from the unit sphere."""
-    if not len(t):
-        return 1.0
-    return float(np.abs(np.linalg.norm(origins + t[:, None] * ways, axis=1) - 1).max())
 
 
 def _finite(t: Array) -> Array:
@@ -286,19 +244,6 @@ def _from_a_corner(origins: Array, ways: Array, corners: Array) -> Array:
     return (u >= 0) & (v >= 0) & (u + v <= 1)
 
 
-def _ring(turns: int, sides: int) -> Array:
-    """Triangles (2 turns sides, 3, 3) of a ring around y."""
-    turn = 2 * np.pi * np.arange(turns) / turns
-    across = 2 * np.pi * np.arange(sides) / sides
-    far = 2 + 0.75 * np.cos(across)
-    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
-    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
-    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
-    c = np.roll(b, -1, axis=0)
-    both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
-    return both.reshape(-1, 3, 3)
-
-
 def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> tuple[Array, Array]:
     """(tested boxes, t), both (R,), of rays through the tree of triangles."""
     boxes, first, count, order = module.build_bvh(corners.min(axis=1), corners.max(axis=1))
@@ -316,11 +261,10 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
     return asked, found
 
 
-FIGURES = figures_of(fig1_far, fig2_edges, fig3_glass, fig4_march, fig5_tree)
+FIGURES = figures_of(fig1_images, fig2_edges, fig3_march, fig4_tree)
 RED = {
-    "fig1_far": "sphere_quadratic",
+    "fig1_images": "refract_from_inside_alike",
     "fig2_edges": "triangle_cramer",
-    "fig3_glass": "refract_from_inside_alike",
-    "fig4_march": "march_d_no_cosine",
-    "fig5_tree": "traverse_far_child_lost",
+    "fig3_march": "march_d_no_cosine",
+    "fig4_tree": "traverse_far_child_lost",
 }

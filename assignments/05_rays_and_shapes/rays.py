@@ -55,6 +55,31 @@ def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
     return np.tile(world_from_camera[:, 3], (len(u), 1)), directions
 
 
+def ring(turns, sides):
+    """Triangles (2 turns sides, 3, 3) of a ring around y, coordinates that float32 has exactly."""
+    turn = 2 * np.pi * np.arange(turns) / turns
+    across = 2 * np.pi * np.arange(sides) / sides
+    far = 2 + 0.75 * np.cos(across)
+    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
+    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
+    a = a.astype(np.float32).astype(float)
+    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
+    c = np.roll(b, -1, axis=0)
+    both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
+    return both.reshape(-1, 3, 3)
+
+
+def floor_and_sky(origins, directions):
+    """Colors (R, 3) of a checkered floor at y = -1.2 and of the sky, for rays that hit nothing."""
+    down = directions[:, 1] < -1e-6
+    t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, directions[:, 1], -1.0), 0.0)
+    x, z = (np.floor(1.5 * (origins[:, k] + t * directions[:, k]) + 0.3) for k in (0, 2))
+    tiles = np.where(((x + z) % 2 == 0)[:, None], (0.85, 0.45, 0.2), (0.95, 0.95, 0.9))
+    fade, up = np.exp(-t / 25)[:, None], directions[:, 1]
+    sky = np.stack([0.5 - 0.3 * up, 0.7 - 0.2 * up, np.ones(len(up))], axis=1)
+    return np.where(down[:, None], fade * tiles + (1 - fade) * 0.8, sky)
+
+
 def hit_sphere(origins: Vectors, directions: Vectors, center: Vector, radius: float) -> PerRay:
     """Intersections of rays with a sphere.
 

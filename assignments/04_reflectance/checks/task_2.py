@@ -14,7 +14,7 @@ check = checks_for(calls=("ggx_lobe",), tolerance=EXACT)
 @check(
     "04.2.peak",
     points=2,
-    hint="equations (8) and (10): alpha is the roughness squared; straight on q is 1 and L is 2",
+    hint="equations (8) and (10): alpha is the roughness squared; straight on q is 1 and S is 2",
     sole="one number that can be worked out by hand",
 )
 def straight_back(t):

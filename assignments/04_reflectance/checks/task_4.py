@@ -128,7 +128,7 @@ def numbers_decide(t):
     "04.4.chi",
     points=4,
     needs=("ggx_lobe", "ggx_pdf"),
-    hint="handout, equations (14) to (16); compare your samples with Figure 3",
+    hint="handout, equations (14) to (16); compare your samples with Figure 6",
     sole="the definition: samples lie as densely as the density says",
 )
 def samples_have_the_density(t):

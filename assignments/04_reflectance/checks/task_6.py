@@ -41,7 +41,7 @@ def near_mirrors(rng, n):
     "04.6.differences",
     points=5,
     tolerance=SMOOTH,
-    hint="handout, section 6: first color and metalness, then the logarithm of D V",
+    hint="handout, section 6: a parameter that all channels share gets the sum over channels",
     sole="the derivative itself, without the reference",
 )
 def agrees_with_differences(t):
@@ -61,7 +61,7 @@ def agrees_with_differences(t):
 @check(
     "04.6.straight",
     points=2,
-    hint="roughness^-4 has the derivative -4 roughness^-5; alpha is the roughness squared",
+    hint="roughness^-4 has the derivative -4 roughness^-5; contributions of channels are summed",
     sole="the roughness alone, where it can be worked out by hand",
 )
 def the_peak_sinks(t):

@@ -167,8 +167,9 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
 def test_the_exploration_runs_and_says_what_it_did(
     tmp_path: Path, rows: int, columns: int, options: tuple[str, ...], said: str
 ) -> None:
-    for name in ("explore.py", "texture_recovery.py"):
-        (tmp_path / name).write_bytes((FOLDER / name).read_bytes())
+    engine = ASSIGNMENTS / "02_backpropagation" / "engine.py"
+    for path in (FOLDER / "explore.py", FOLDER / "texture_recovery.py", engine):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
 
     values = np.random.default_rng(0).integers(0, 256, (rows, columns, 3), dtype=np.uint8)
     Image.fromarray(values).save(tmp_path / "mine.png")
@@ -178,5 +179,6 @@ def test_the_exploration_runs_and_says_what_it_did(
     assert ran.returncode == 0, ran.stderr
     assert f"image: mine.png, {said}" in ran.stdout
     assert "core" in ran.stdout
+    assert float(ran.stdout.partition("its gradient is ")[2].partition(" ")[0]) < 1e-12
     assert "the smallest eigenvalue is 1/" in ran.stdout
     assert (tmp_path / "recovered.png").stat().st_size > 5_000

@@ -184,7 +184,7 @@ def test_right_samples_are_rejected_as_rarely_as_they_should(solution) -> None:
 
 
 def test_a_wrong_sampler_is_told_where_its_samples_lie() -> None:
-    """About a tenth of the right ones is below the surface (Figure 3), of the bare cap's half."""
+    """About a tenth of the right ones is below the surface (Figure 6), of the bare cap's half."""
     outcomes = judge(FOLDER, apply_mutant(FOLDER, "sample_cap_alone"), tasks=("04.4",))
     told = next(each for each in outcomes if each.id == "04.4.chi")
     mine, right = (
@@ -231,7 +231,7 @@ def test_diagnoses_fit_one_answer_alone(solution) -> None:
 def test_predictions_come_true(solution) -> None:
     seen = solution.furnace(mirrors(solution, 1.0), np.array([1.0]))[0, 0]
     assert seen == pytest.approx(1 - np.log(2))
-    # The others are facts of Figures 1 and 6.
+    # The others are facts of Figures 3 and 7.
 
 
 def test_generated_questions_have_the_answers_that_their_reasons_give(solution) -> None:

@@ -165,7 +165,7 @@ def test_check_values_of_the_tree(solution) -> None:
 
 
 def test_predictions_and_diagnoses_come_true(solution, checks) -> None:
-    # p2 is the gate of task 4; p1 and p3 are facts of figures 2 and 5.
+    # p2 is the gate of task 4; p1 and p3 are facts of figures 2 and 4.
     inside = load_module("rays", apply_mutant(FOLDER, "traverse_starts_outside"))
     rng = np.random.default_rng(3)
     # d1: a room of triangles, seen from within and from far behind.
