@@ -38,14 +38,14 @@ def screen_alpha_back(mean2d, cov2d, opacity_logits, pixels, d_alpha):
     return splatting.screen_alpha(mean2d, cov2d, opacity_logits, pixels)[1](d_alpha)
 
 
-def composite(alpha, colors, depth, background):
-    """The values of `composite`."""
-    return splatting.composite(alpha, colors, depth, background)[0]
+def composite_splats(alpha, colors, depth, background):
+    """The values of `composite_splats`."""
+    return splatting.composite_splats(alpha, colors, depth, background)[0]
 
 
-def composite_back(alpha, colors, depth, background, d_shown):
+def composite_splats_back(alpha, colors, depth, background, d_shown):
     """Result of its `back`."""
-    return splatting.composite(alpha, colors, depth, background)[1](d_shown)
+    return splatting.composite_splats(alpha, colors, depth, background)[1](d_shown)
 
 
 def render(gaussians, camera, pixels, background):

@@ -34,5 +34,5 @@ def slope_of_the_held_entry(reference, h, f, z):
 def slope_of_the_first_alpha(reference, a, b):
     """The derivative of a pixel with respect to the alpha of the nearer of two splats."""
     colors, depth = np.array([[1.0] * 3, [0.5] * 3]), np.array([1.0, 2.0])
-    _, back = reference.composite(np.array([[a], [b]]), colors, depth, np.full(3, 0.2))
+    _, back = reference.composite_splats(np.array([[a], [b]]), colors, depth, np.full(3, 0.2))
     return float(back(np.array([[1.0, 0.0, 0.0]]))[0][0, 0])

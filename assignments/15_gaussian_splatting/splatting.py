@@ -8,14 +8,16 @@ A scene is a dict of arrays with a row for each Gaussian, and every number may t
     "opacity_logits"    (N,), the opacity at the center is 1 / (1 + exp(-logit))
     "colors"            (N, 3), as in the images
 
-A *camera* is a dict: "camera_from_world" (3, 4), a rotation W and a translation b that take a point
-p to t = W p + b with x to the right, y down, z forward; "focal" and "center", (2,) each, in pixels
-along x and y; "width" and "height". The center of pixel (row, column) is (column + 1/2, row + 1/2).
+A *camera* is a dict: "camera_from_world" (3, 4), a rotation W and a translation t0 that take a
+point p to t = W p + t0 with x to the right, y down, z forward; "focal" and "center", (2,) each, in
+pixels along x and y; "width" and "height". The center of pixel (row, column) is at
+(column + 1/2, row + 1/2).
 
 Your tasks are six functions, one section of the handout each; `photograd course check 15` tells
 how far you are. Five of them return, after their values, a function `back`: given the derivative of
 a loss with respect to the values, it returns the derivatives with respect to the arguments. The
-other functions are given and stay as they are. All numbers are float64.
+other functions are given and stay as they are; `volume_rendering.py`, beside this file, must be
+yours of assignment 08. All numbers are float64.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
+from volume_rendering import composite, composite_adjoint
 
 # Arrays and their shapes; float64 where nothing else is said.
 Vectors = Annotated[np.ndarray, "N 3"]
@@ -71,7 +74,7 @@ def covariance(quats: Quaternions, log_scales: Vectors) -> tuple[Covariances, Ba
 
     Returns:
         (cov, back): (N, 3, 3), symmetric; back(d_cov) returns (d_quats, d_log_scales), and each of
-        the nine numbers of d_cov is a derivative of its own. Handout equations (4) to (8).
+        the nine numbers of d_cov is a derivative of its own. Handout section 1.
     """
     # >>> solution 15.1
     length = np.linalg.norm(quats, axis=1, keepdims=True)
@@ -120,7 +123,7 @@ def project(
     Returns:
         (mean2d, cov2d, depth, back): (N, 2), pixels along x and y; (N, 3), the entries xx, xy, yy,
         in pixels squared; (N,), meters; back(d_mean2d, d_cov2d) returns (d_means, d_cov). Handout
-        equations (9) to (14).
+        section 2.
     """
     # >>> solution 15.2
     W, f = camera["camera_from_world"][:, :3], camera["focal"]
@@ -158,14 +161,14 @@ def screen_alpha(
     Returns:
         (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, absgrad);
         absgrad (N, 2) is the absolute gradient, the sum over pixels of the absolute values of their
-        contributions to d_mean2d. Handout equations (15) to (21).
+        contributions to d_mean2d. Handout section 3.
     """
     # >>> solution 15.3
     S = cov2d + np.array([LOW_PASS, 0, LOW_PASS])
     det = S[:, 0] * S[:, 2] - S[:, 1] ** 2
-    A, B, C = (S[:, ::-1] * [1, -1, 1] / det[:, None]).T[:, :, None]
+    Qxx, Qxy, Qyy = (S[:, ::-1] * [1, -1, 1] / det[:, None]).T[:, :, None]
     dx, dy = (mean2d[:, None] - pixels).transpose(2, 0, 1)
-    vx, vy = A * dx + B * dy, B * dx + C * dy
+    vx, vy = Qxx * dx + Qxy * dy, Qxy * dx + Qyy * dy
     o = 1 / (1 + np.exp(-opacity_logits))
     raw = o[:, None] * np.exp(-(dx * vx + dy * vy) / 2)
     seen = raw >= ALPHA_MIN
@@ -182,38 +185,39 @@ def screen_alpha(
     # <<< solution
 
 
-def composite(
+def composite_splats(
     alpha: Alphas, colors: Colors, depth: PerGaussian, background: Color
 ) -> tuple[Shown, Back]:
-    """Alpha compositing of splats, front to back.
+    """Splats in front of each other, by the `composite` of assignment 08.
 
     Args:
-        alpha: (N, P), below 1.
+        alpha: (N, P), below 1; N may be 0.
         colors: (N, 3).
         depth: (N,); the smaller is in front, of equal ones the earlier row.
         background: (3,), the color behind all splats.
 
     Returns:
         (shown, back): (P, 3); back(d_shown) returns (d_alpha, d_colors, d_background), rows in
-        their original order. Handout equations (22) to (25).
+        their original order. Handout section 4.
     """
     # >>> solution 15.4
+    if not len(alpha):
+        nothing = np.zeros(alpha.shape), np.zeros(colors.shape)
+        return background + np.zeros((alpha.shape[1], 3)), lambda g: (*nothing, g.sum(axis=0))
     order = np.argsort(depth, kind="stable")
-    a, c = alpha[order], colors[order]
-    T = np.cumprod(np.concatenate([np.ones((1, a.shape[1])), 1 - a]), axis=0)
-    w = T[:-1] * a
+    clear = 1 - alpha[order].T
+    layers = np.broadcast_to(colors[order], (*clear.shape, 3))
+    steps = -np.log(clear), layers, np.ones(clear.shape), background
+    shown, T_end = composite(*steps)
 
     def back(d_shown):
-        v = c @ d_shown.T
-        wv = w * v
-        end = T[-1] * (d_shown @ background)
-        rest = end + np.sum(wv, axis=0) - np.cumsum(wv, axis=0)
-        d_alpha, d_colors = np.zeros_like(a), np.zeros_like(c)
-        d_alpha[order] = T[:-1] * v - rest / (1 - a)
-        d_colors[order] = w @ d_shown
-        return d_alpha, d_colors, T[-1] @ d_shown
+        d_sigma, d_color, d_background = composite_adjoint(*steps, d_shown, 0 * T_end)
+        d_alpha, d_colors = np.zeros(alpha.shape), np.zeros(colors.shape)
+        d_alpha[order] = (d_sigma / clear).T
+        d_colors[order] = d_color.sum(axis=0)
+        return d_alpha, d_colors, d_background
 
-    return w.T @ c + T[-1][:, None] * background, back
+    return shown, back
     # <<< solution
 
 
@@ -231,7 +235,7 @@ def render(
     Returns:
         (shown, back): (P, 3); back(d_shown) returns a dict with the derivatives with respect to all
         five arrays of the scene and "background" (3,), and the absolute gradient "absgrad" (N, 2);
-        culled rows have zeros. Handout equations (26) and (27).
+        culled rows have zeros. Handout section 5.
     """
     # >>> solution 15.5
     drawn = depths(gaussians["means"], camera) > NEAR
@@ -239,7 +243,7 @@ def render(
     cov, shape_back = covariance(part["quats"], part["log_scales"])
     mean2d, cov2d, depth, lens_back = project(part["means"], cov, camera)
     alpha, alpha_back = screen_alpha(mean2d, cov2d, part["opacity_logits"], pixels)
-    shown, blend_back = composite(alpha, part["colors"], depth, background)
+    shown, blend_back = composite_splats(alpha, part["colors"], depth, background)
 
     def back(d_shown):
         found = {}
@@ -264,12 +268,12 @@ def densify(
     Args:
         gaussians: N of them; these arrays must not change.
         grad2d: (N,), positional gradient statistics: mean length of the absolute gradient.
-        rng: a numpy.random.Generator, used once: standard_normal((2 K, 3)) for K that are split.
+        rng: a numpy.random.Generator, used once: standard_normal((2 * count, 3)) for count splits.
         max_count: the largest number of Gaussians, unless more than that stay after pruning.
 
     Returns:
         (gaussians, source): the new scene, and (M,), integers: the old row of each, or -1 for a new
-        one. Handout equations (28) to (32).
+        one. Handout section 6.
     """
     # >>> solution 15.6
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))

@@ -119,7 +119,7 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
     return alpha, back
 
 
-def composite(alpha, colors, depth, background):
+def composite_splats(alpha, colors, depth, background):
     """Splats over one another, nearest first."""
     order = np.lexsort((np.arange(len(depth)), depth))
     a = alpha[order]
@@ -153,7 +153,7 @@ def render(gaussians, camera, pixels, background):
     cov, of_shape = covariance(quats, log_scales)
     mean2d, cov2d, depth, of_lens = project(means, cov, camera)
     alpha, of_alpha = screen_alpha(mean2d, cov2d, logits, pixels)
-    shown, of_blend = composite(alpha, colors, depth, background)
+    shown, of_blend = composite_splats(alpha, colors, depth, background)
 
     def back(d_shown):
         d_alpha, d_colors, d_background = of_blend(d_shown)

@@ -2,6 +2,7 @@
 
 import numpy as np
 from splatting import CROSS, FAINT, LOW_PASS, NEAR, SHRINK, SMALL, THRESHOLD, depths, limits
+from volume_rendering import composite, composite_adjoint
 
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 
@@ -87,26 +88,22 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
     return np.where(alpha > ALPHA_MAX, ALPHA_MAX, alpha), back
 
 
-def composite(alpha, colors, depth, background):
+def composite_splats(alpha, colors, depth, background):
     """Splats over one another, nearest first."""
     rank = np.argsort(depth, kind="mergesort")
-    T = np.ones((len(depth) + 1, alpha.shape[1]))
-    for k, i in enumerate(rank):
-        T[k + 1] = T[k] * (1 - alpha[i])
-    shown = T[-1][:, None] * background[None]
-    for k, i in enumerate(rank):
-        shown = shown + (T[k] * alpha[i])[:, None] * colors[i]
+    if len(rank) == 0:
+        gone = alpha * 0.0, colors * 0.0
+        return np.tile(background, (alpha.shape[1], 1)), lambda d: (*gone, d.sum(axis=0))
+    sigma = -np.log1p(-alpha[rank]).T
+    color = np.repeat(colors[rank][None], len(sigma), axis=0)
+    ones = np.ones_like(sigma)
+    shown, _ = composite(sigma, color, ones, background)
 
     def back(d_shown):
-        d_alpha, d_colors = np.empty_like(alpha), np.empty_like(colors)
-        behind = T[-1] * (d_shown @ background)
-        for k in range(len(rank) - 1, -1, -1):
-            i = rank[k]
-            v = d_shown @ colors[i]
-            d_alpha[i] = T[k] * v - behind / (1 - alpha[i])
-            d_colors[i] = (T[k] * alpha[i]) @ d_shown
-            behind = behind + T[k] * alpha[i] * v
-        return d_alpha, d_colors, T[-1] @ d_shown
+        zero = np.zeros(len(sigma))
+        d_sigma, d_color, d_b = composite_adjoint(sigma, color, ones, background, d_shown, zero)
+        place = np.argsort(rank)
+        return (d_sigma * np.exp(sigma)).T[place], d_color.sum(axis=0)[place], d_b
 
     return shown, back
 
@@ -121,7 +118,7 @@ def render(gaussians, camera, pixels, background):
     shapes, from_shapes = covariance(gaussians["quats"], gaussians["log_scales"])
     *on_screen, z, from_screen = project(means, shapes, camera)
     alpha, from_alpha = screen_alpha(*on_screen, logits, pixels)
-    shown, from_shown = composite(alpha, gaussians["colors"], z, background)
+    shown, from_shown = composite_splats(alpha, gaussians["colors"], z, background)
 
     def back(d_shown):
         d_alpha, d_colors, d_background = from_shown(d_shown)

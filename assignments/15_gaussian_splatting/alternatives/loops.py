@@ -125,7 +125,7 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
     return alpha, back
 
 
-def composite(alpha, colors, depth, background):
+def composite_splats(alpha, colors, depth, background):
     """Splats over one another, nearest first."""
     nearest = sorted(range(len(depth)), key=lambda i: depth[i])
     shown = np.tile(background, (alpha.shape[1], 1))
@@ -153,7 +153,7 @@ def render(gaussians, camera, pixels, background):
     cov, back1 = covariance(quats, log_scales)
     mean2d, cov2d, z, back2 = project(means, cov, camera)
     alpha, back3 = screen_alpha(mean2d, cov2d, gaussians["opacity_logits"][index], pixels)
-    shown, back4 = composite(alpha, gaussians["colors"][index], z, background)
+    shown, back4 = composite_splats(alpha, gaussians["colors"][index], z, background)
 
     def back(d_shown):
         out = {key: np.zeros_like(value) for key, value in gaussians.items()}

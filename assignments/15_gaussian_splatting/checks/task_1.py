@@ -27,7 +27,7 @@ def spread_back(t, q, s, g):
 @check(
     "15.1.axes",
     points=2,
-    hint="handout, equations (4) to (6): w turns nothing, (x, y, z) is the axis",
+    hint="handout, equations (6) to (8): w turns nothing, (x, y, z) is the axis",
     sole="small enough to work out by hand",
 )
 def known_turns(t):
@@ -74,7 +74,7 @@ def symmetric_positive_and_free_of_length(t):
     points=4,
     adjoints=("covariance",),
     tolerance=GATE,
-    hint="handout, equations (7) and (8); d_log_scales: M, not R; d_cov need not be symmetric",
+    hint="handout, section 1, steps 1 to 4; d_cov need not be symmetric",
     sole="the derivative itself, without the reference",
 )
 def the_shape_agrees_with_differences(t):
@@ -96,7 +96,7 @@ def the_shape_agrees_with_differences(t):
     "15.1.length",
     points=1,
     adjoints=("covariance",),
-    hint="handout, equation (8): a longer q alone changes nothing",
+    hint="handout, equation (5): a longer q alone changes nothing",
     sole="names what the division by the length leaves out",
 )
 def length_has_no_derivative(t):

@@ -143,7 +143,7 @@ def projection_gate(t, points, camera, g):
     points=4,
     adjoints=("project",),
     tolerance=GATE,
-    hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
+    hint="handout, section 2: xy is two entries of a matrix. d_means: t_z stands in four "
     "entries of J and in both u; inside, J_xz depends on u as well",
     sole="the derivative itself, without the reference",
 )

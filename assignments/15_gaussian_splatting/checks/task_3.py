@@ -41,7 +41,7 @@ def wide_splats(rng, n, p):
 @check(
     "15.3.round",
     points=2,
-    hint="handout, equations (15) to (18), for a round splat",
+    hint="handout, equations (14) to (16), for a round splat",
     sole="small enough to work out by hand",
 )
 def a_round_splat(t):
@@ -59,8 +59,8 @@ def a_round_splat(t):
 @check(
     "15.3.ellipse",
     points=2,
-    hint="handout, equations (16) and (17): the inverse swaps xx and yy; B dx dy stands outside "
-    "of the 1/2; or dx and dy have different signs",
+    hint="handout, equations (14) and (15): the inverse swaps xx and yy; Q_xy dx dy stands "
+    "outside of the 1/2; or dx and dy have different signs",
     sole="says whether the conic belongs to the covariance",
 )
 def on_an_ellipse_alpha_is_the_same(t):
@@ -77,7 +77,7 @@ def on_an_ellipse_alpha_is_the_same(t):
     "15.3.cuts",
     points=2,
     adjoints=("screen_alpha",),
-    hint="handout, equation (18): below ALPHA_MIN nothing, never above ALPHA_MAX; both are flat",
+    hint="handout, equation (16): below ALPHA_MIN nothing, never above ALPHA_MAX; both are flat",
     sole="names the cut-off, and whether its derivative is 0",
 )
 def cut_offs(t):
@@ -92,7 +92,7 @@ def cut_offs(t):
         o = 1 / (1 + np.exp(-logit))
         pixel = m + np.array([np.sqrt(2 * 4.3 * np.log(o / alpha)), 0.0])
         got = taken(t, m, s, np.array([logit]), pixel)
-        t.close(f"alpha where o G = {alpha}", got, [[expected]], reveal=True)
+        t.close(f"alpha where o exp(-rho) = {alpha}", got, [[expected]], reveal=True)
         d_m, d_s, d_o, absgrad = taken_back(t, m, s, np.array([logit]), pixel, np.ones((1, 1)))
         for name, d in (
             ("mean2d", d_m),
@@ -103,7 +103,7 @@ def cut_offs(t):
             moves = bool(d.any())
             t.require(
                 moves == (alpha == expected),
-                f"d_{name} where o G = {alpha}: must {'not ' * (alpha == expected)}be 0",
+                f"d_{name} where o exp(-rho) = {alpha}: must {'not ' * (alpha == expected)}be 0",
             )
 
 
@@ -112,8 +112,8 @@ def cut_offs(t):
     points=4,
     adjoints=("screen_alpha",),
     tolerance=GATE,
-    hint="handout, equations (19) and (20): derivatives of A, B, C or of the covariance, each "
-    "with its own count of B; the derivative of oG with respect to the logit is oG (1 - o)",
+    hint="handout, section 3: derivatives of Q or of the covariance, each with its own count of "
+    "xy; the opacity is a function of the logit",
     sole="the derivative itself, without the reference",
 )
 def alpha_agrees_with_differences(t):
@@ -139,7 +139,7 @@ def alpha_agrees_with_differences(t):
     "15.3.absgrad",
     points=2,
     adjoints=("screen_alpha",),
-    hint="handout, equation (21): absolute values first, then the sum over pixels",
+    hint="handout, equation (17): absolute values first, then the sum over pixels",
     sole="tests absgrad only",
 )
 def absgrad_does_not_cancel(t):

@@ -10,20 +10,20 @@ from photograd_course.grading.adjoint_gate import (
 
 from .common import EXACT, GATE
 
-check = checks_for(calls=("composite",), tolerance=EXACT)
+check = checks_for(calls=("composite_splats",), tolerance=EXACT)
 
 
 def blended(t, a, c, z, b):
-    """The values of `composite`."""
-    return t.call("adapters.composite", a, c, z, b, returns=Array((a.shape[1], 3)))
+    """The values of `composite_splats`."""
+    return t.call("adapters.composite_splats", a, c, z, b, returns=Array((a.shape[1], 3)))
 
 
 def blended_back(t, a, c, z, b, g):
-    """Result of the `back` of `composite`."""
+    """Result of the `back` of `composite_splats`."""
     parts = Items(
         Array(a.shape), Array(c.shape), Array((3,)), names=("d_alpha", "d_colors", "d_background")
     )
-    return t.call("adapters.composite_back", a, c, z, b, g, returns=parts)
+    return t.call("adapters.composite_splats_back", a, c, z, b, g, returns=parts)
 
 
 def layers(rng, n, p):
@@ -36,7 +36,7 @@ def layers(rng, n, p):
 @check(
     "15.4.layers",
     points=2,
-    hint="handout, equation (22): T is what all splats in front let through, not this one",
+    hint="sort by depth, then call your composite of 08; is `photograd course check 08` green?",
     sole="small enough to work out by hand",
 )
 def known_layers(t):
@@ -63,7 +63,7 @@ def known_layers(t):
 @check(
     "15.4.order",
     points=3,
-    adjoints=("composite",),
+    adjoints=("composite_splats",),
     hint="sort by depth inside; back must undo the sorting",
     sole="needs no formula: the list's order means nothing",
 )
@@ -82,9 +82,9 @@ def the_order_of_the_list_does_not_matter(t):
 @check(
     "15.4.differences",
     points=4,
-    adjoints=("composite",),
+    adjoints=("composite_splats",),
     tolerance=GATE,
-    hint="handout, equations (23) to (25): what is behind a splat is seen less when it grows",
+    hint="handout, section 4: composite_adjoint gives d_sigma; from it d_alpha; colors are shared",
     sole="the derivative itself, without the reference",
 )
 def blending_agrees_with_differences(t):

@@ -36,7 +36,7 @@ def middle_pixels(rng, camera, p):
 @check(
     "15.5.one",
     points=2,
-    hint="handout, equation (26): the four stages in their order; the camera's depth sorts",
+    hint="handout, section 5: the four stages in their order; the camera's depth sorts",
     sole="small enough to work out by hand",
 )
 def one_splat_straight_ahead(t):
@@ -61,7 +61,7 @@ def one_splat_straight_ahead(t):
     "15.5.differences",
     points=4,
     tolerance=GATE,
-    hint="handout, equation (27): the stages backward, each with what the one after it returns",
+    hint="handout, section 5: the stages backward, each with what the one after it returns",
     sole="the whole chain, group by group, without the reference",
 )
 def the_chain_agrees_with_differences(t):

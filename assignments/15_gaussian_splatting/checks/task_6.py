@@ -40,8 +40,7 @@ def eight(rng):
 @check(
     "15.6.rows",
     points=2,
-    hint="handout, equations (28) to (30): first those that stay, then clones, then parts "
-    "twice; work on copies",
+    hint="handout, section 6: first those that stay, then clones, then parts twice; work on copies",
     sole="asks which rows there are, and nothing of their values",
 )
 def who_stays_and_who_is_new(t):
@@ -59,8 +58,8 @@ def who_stays_and_who_is_new(t):
 @check(
     "15.6.values",
     points=2,
-    hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); points: L z with L "
-    "of the whole",
+    hint="handout, equations (19) and (20). log-scales: minus log(SHRINK); means: B times the "
+    "random numbers, B of the original",
     sole="tests the values of new rows",
 )
 def clones_keep_the_middle_and_parts_are_drawn(t):

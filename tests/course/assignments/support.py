@@ -41,7 +41,7 @@ from support.tree import ROOT
 
 ASSIGNMENTS = ROOT / "assignments"
 SECRET = b"seeds of the hidden checks, in tests"
-PICTURE_BYTES = 120_000
+PICTURE_BYTES = 500_000
 # Mean difference of two drawings of one figure, in gray levels; 0 here, text moves elsewhere.
 PICTURE_DIFFERENCE = 3.0
 

@@ -104,7 +104,7 @@ def test_figures(broken: Broken) -> None:
     assert broken.says("figures") == [
         "the handout shows figures/fig1_x.png, which is not in the kit"
     ]
-    broken.add("figures/fig1_x.png", "x" * 120_001)
+    broken.add("figures/fig1_x.png", "x" * 500_001)
     assert "more than 120000" in broken.says("figures")[0]
 
 

@@ -12,23 +12,23 @@ from .common import derivatives, values
 @hidden_check(
     "15.4.hidden",
     points=3,
-    calls=("composite",),
-    adjoints=("composite",),
+    calls=("composite_splats",),
+    adjoints=("composite_splats",),
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[
         Subject(
-            "adapters.composite",
+            "adapters.composite_splats",
             lambda t, n: layers(t.rng, n, 3),
             lambda _: Array((3, 3)),
-            right=values("composite"),
+            right=values("composite_splats"),
             sizes=(1, 2, 40),
         ),
         Subject(
-            "adapters.composite_back",
+            "adapters.composite_splats_back",
             lambda t, n: (*layers(t.rng, n, 3), t.rng.normal(size=(3, 3))),
             lambda n: Items(Array((n, 3)), Array((n, 3)), Array((3,))),
-            right=derivatives("composite"),
+            right=derivatives("composite_splats"),
             sizes=(1, 2, 40),
         ),
     ],
@@ -38,7 +38,7 @@ def random_layers(t):
     a, c, z, b = layers(t.rng, 20, 9)
     z = np.floor(z)  # seven depths
     g = random_cotangent(t.rng, (9, 3))
-    right, pullback = t.reference.composite(a, c, z, b)
+    right, pullback = t.reference.composite_splats(a, c, z, b)
     t.close("shown", blended(t, a, c, z, b), right)
     got = blended_back(t, a, c, z, b, g)
     names = ("d_alpha", "d_colors", "d_background")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from ..assignment_build import AssignmentBuild
 
-LARGEST = 120_000  # bytes
+LARGEST = 500_000  # bytes
 _LINK = re.compile(r"!\[[^\]]*\]\(([^)\s]+)")
 
 

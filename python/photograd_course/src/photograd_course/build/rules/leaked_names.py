@@ -53,5 +53,5 @@ def own_texts(build: AssignmentBuild) -> dict[str, str]:
     return {
         path: data.decode("utf-8")
         for path, data in build.visible.items()
-        if not path.endswith((".png", ".npy", ".npz"))
+        if not path.endswith((".png", ".jpg", ".npy", ".npz"))
     }
