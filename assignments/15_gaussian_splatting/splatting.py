@@ -202,8 +202,8 @@ def composite_splats(
     """
     # >>> solution 15.4
     if not len(alpha):
-        nothing = np.zeros(alpha.shape), np.zeros(colors.shape)
-        return background + np.zeros((alpha.shape[1], 3)), lambda g: (*nothing, g.sum(axis=0))
+        shown = np.repeat(background[None], alpha.shape[1], axis=0)
+        return shown, lambda g: (np.zeros(alpha.shape), np.zeros(colors.shape), g.sum(axis=0))
     order = np.argsort(depth, kind="stable")
     clear = 1 - alpha[order].T
     layers = np.broadcast_to(colors[order], (*clear.shape, 3))
@@ -211,7 +211,7 @@ def composite_splats(
     shown, T_end = composite(*steps)
 
     def back(d_shown):
-        d_sigma, d_color, d_background = composite_adjoint(*steps, d_shown, 0 * T_end)
+        d_sigma, d_color, d_background = composite_adjoint(*steps, d_shown, np.zeros(T_end.shape))
         d_alpha, d_colors = np.zeros(alpha.shape), np.zeros(colors.shape)
         d_alpha[order] = (d_sigma / clear).T
         d_colors[order] = d_color.sum(axis=0)

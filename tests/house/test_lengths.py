@@ -31,7 +31,7 @@ LONGER = {
     "assignments/07_path_tracing/path_tracing.py": 600,
     "assignments/10_sparse_grids/sparse_grids.py": 430,
     "assignments/14_edges_and_light/edges_and_light.py": 650,
-    "assignments/15_gaussian_splatting/splatting.py": 420,
+    "assignments/15_gaussian_splatting/splatting.py": 410,
 }
 FUNCTION_CAP = 60
 COLUMNS = 100

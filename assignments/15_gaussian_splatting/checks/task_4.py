@@ -101,5 +101,7 @@ def blending_agrees_with_differences(t):
     agrees_with_finite_differences(
         t, found, forward, {"alpha": a, "colors": c, "background": b}, g, GATE
     )
+    none = blended_back(t, np.zeros((0, 4)), np.zeros((0, 3)), np.zeros(0), b, g)
+    t.close("d_background, of no splat at all", none[2], g.sum(axis=0))
     names = ("alpha", "colors", "background")
     require_zero_for_zero(t, dict(zip(names, blended_back(t, a, c, z, b, 0 * g), strict=True)))

@@ -105,7 +105,7 @@ def test_figures(broken: Broken) -> None:
         "the handout shows figures/fig1_x.png, which is not in the kit"
     ]
     broken.add("figures/fig1_x.png", "x" * 500_001)
-    assert "more than 120000" in broken.says("figures")[0]
+    assert "more than 500000" in broken.says("figures")[0]
 
 
 def solve_with_names(broken: Broken) -> None:
