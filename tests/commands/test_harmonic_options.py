@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from pathlib import Path
 from typing import Any
 
 import pytest
 from photograd._checkpoint import load_checkpoint
+from photograd.commands.fit import fit
+from photograd.fields import fittable
 from photograd.fitting import FitOptions, options_for
 from photograd.fitting.compare import Candidate
 
@@ -37,7 +40,15 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
     assert Candidate("sparse_sh", 128).options(FitOptions()).resolution == 128
     shown = photograd("fit", "--help").out
     text = " ".join(shown.replace("│", " ").split())
-    assert "128; hash_grid: 512, mesh: 16, nerf: 64, sparse_sh: 256" in text
+    assert "128; hash_grid: 512, mesh: 16, nerf: 64, plenoctree: 192, sparse_sh: 256" in text
+    assert "0.02; plenoctree: 0.01" in text
+
+
+def test_a_default_of_the_command_line_hides_none_of_a_representation() -> None:
+    own = {name for kind in fittable().values() for name in kind.fit_defaults}
+    parameters = inspect.signature(fit).parameters
+    assert {"prune", "resolution", "steps"} <= own
+    assert {name: parameters[name].default for name in own} == dict.fromkeys(own)
 
 
 @pytest.mark.parametrize(

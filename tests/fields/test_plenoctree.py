@@ -9,7 +9,13 @@ import pytest
 from photograd import sh
 from photograd.errors import RangeError
 from photograd.fields import HashGrid, Nerf, PlenOctree
-from photograd.fields.tabulate import directions_around, radiance_of, tabulated
+from photograd.fields.tabulate import (
+    cells_in_reach,
+    directions_around,
+    radiance_of,
+    tabulated,
+    visible_cells,
+)
 from photograd.representation import RayBatch, RenderOptions
 
 OPTIONS = RenderOptions()
@@ -104,6 +110,30 @@ def test_the_greatest_weight_of_a_leaf_is_that_of_the_pixel_that_needs_it_most()
     opacity = tree.render(batch, seed=0, step=0, options=OPTIONS)[0].opacity
     np.testing.assert_allclose(np.sum(one, axis=1), opacity, rtol=1e-12)
     assert 0 < weight.max() < 1
+
+
+@pytest.mark.parametrize("shape", [(5, 4, 6), (20, 16, 24), (70, 33, 12)])
+def test_cells_that_the_occupancy_marks_nowhere_are_not_read(shape: Any) -> None:
+    field = HashGrid.example(seed=3)
+    field.reached = np.zeros((64, 64, 64), np.float32)
+    field.reached[40:60, 3:30, 20:34] = 1e3  # [z, y, x]: neither centered nor symmetric
+    reach = cells_in_reach(field, field.box, shape)
+    assert reach is not None
+    assert reach.shape == shape
+    assert 0 < reach.mean() < 0.15
+    read = [
+        visible_cells(radiance_of(field, 0.05), field.box, shape, opacity=0.0, reach=cells)
+        for cells in (None, reach)
+    ]
+    assert len(read[0].index) > 0
+    np.testing.assert_array_equal(read[1].index, read[0].index)
+    np.testing.assert_array_equal(read[1].sigma_t, read[0].sigma_t)
+    field.reached[:] = 0.0
+    field.reached[0, 0, 0] = 1e3
+    corner = cells_in_reach(field, field.box, shape)
+    assert corner is not None
+    assert corner[0, 0, 0]
+    assert corner.sum() <= np.prod([-(-n // 64) + 1 for n in shape])
 
 
 def test_an_empty_field_is_refused() -> None:

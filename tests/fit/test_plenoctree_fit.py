@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.capture.capture import Capture
 from photograd.errors import RangeError
-from photograd.fields import PlenOctree
+from photograd.fields import PlenOctree, plenoctree
 from photograd.fitting.compare import parse_candidates, source_of
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
@@ -70,6 +70,17 @@ def test_leaves_that_weigh_little_in_every_view_are_dropped(
     ]
     assert sizes == sorted(sizes, reverse=True)
     assert 0 < sizes[2] < sizes[0]
+
+
+def test_leaves_smaller_than_a_pixel_are_looked_for_in_every_pixel(
+    networks: Model, capture: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pixels = sum(view.camera.width * view.camera.height for view in capture.train)
+    assert sum(len(batch.pixel) for batch in plenoctree._training_rays(capture)) == pixels
+    leaves = [PlenOctree.from_field(networks.field, 48, capture, degree=0).shape[0]]
+    monkeypatch.setattr(plenoctree, "VISIBILITY_RAYS", pixels // 8)
+    leaves.append(PlenOctree.from_field(networks.field, 48, capture, degree=0).shape[0])
+    assert 0 < leaves[1] < 0.5 * leaves[0]  # measured: 0.18
 
 
 def test_it_starts_from_networks_alone(capture: Capture) -> None:

@@ -19,8 +19,9 @@ struct HashAxis {
 };
 
 /// p outside of [0, 1] belongs to the border of the outermost cell, where nothing changes with p.
+/// A call would keep the loops over points from becoming vectors.
 template <class R>
-inline HashAxis<R> hash_axis(R p, int resolution, bool smoothstep) {
+[[gnu::always_inline]] inline HashAxis<R> hash_axis(R p, int resolution, bool smoothstep) {
     const R n = static_cast<R>(resolution);
     const R inside = smaller(larger(p, R(0)), R(1)), at = inside * n;
     const int cell = clamped(to_int(at), 0, resolution - 1);

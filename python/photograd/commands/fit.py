@@ -117,10 +117,11 @@ DegreeOption: TypeAlias = Annotated[
     ),
 ]
 PruneOption: TypeAlias = Annotated[
-    float,
+    float | None,
     typer.Option(
         "--prune",
         min=0.0,
+        show_default=_defaults("prune"),
         help=f"Drop voxels of {_users('prune')} that weigh less in every pixel; 0: none.",
     ),
 ]
@@ -213,7 +214,7 @@ def fit(
     learning_rate: LearningRateOption = DEFAULTS.learning_rate,
     total_variation: TotalVariationOption = DEFAULTS.total_variation,
     degree: DegreeOption = None,
-    prune: PruneOption = DEFAULTS.prune,
+    prune: PruneOption = None,
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
     decode: DecodeOption = DEFAULTS.decode,

@@ -35,7 +35,7 @@ from photograd.fields.distill import distill
 from photograd.fields.march import MarchPolicy
 from photograd.fields.neural_field import NeuralField
 from photograd.fields.sparse_sh import SparseSh
-from photograd.fields.tabulate import directions_around, radiance_of, visible_cells
+from photograd.fields.tabulate import cells_in_reach, directions_around, radiance_of, visible_cells
 from photograd.representation import (
     Fittable,
     Outputs,
@@ -118,7 +118,8 @@ class LeafMlps(Fittable):
         edge = float((corners[1] - corners[0]).max()) / resolution
         box = np.stack([corners[0], corners[0] + edge * np.array(shape)])
         radiance = radiance_of(field, edge / 8)
-        cells = visible_cells(radiance, box, (x, y, z), opacity=VISIBLE)
+        reach = cells_in_reach(field, box, (x, y, z))
+        cells = visible_cells(radiance, box, (x, y, z), opacity=VISIBLE, reach=reach)
         if not len(cells.index):
             expected = f"a field with voxels more opaque than {VISIBLE}"
             raise RangeError(message("LeafMlps.from_field", "field", expected, "none"))

@@ -15,12 +15,13 @@ from photograd.fields.dense_grid import cubic_voxels
 from photograd.fields.neural_field import NeuralField
 from photograd.fields.octree_leaves import Leaves
 from photograd.fields.octree_sh import OctreeSh
-from photograd.fields.tabulate import radiance_of, tabulated
+from photograd.fields.tabulate import cells_in_reach, radiance_of, tabulated
 from photograd.representation import RayBatch, Start, register
 from photograd.types import Array
 
-VISIBILITY_RAYS = 1 << 19
-"""Of all training views, that say which leaves are visible."""
+VISIBILITY_RAYS = 1 << 22
+"""Of all training views, that say which leaves are visible. A cell may be smaller than a pixel: far
+fewer rays than the photographs have would miss some of those that are seen."""
 
 
 @register
@@ -31,7 +32,7 @@ class PlenOctree(OctreeSh):
     """
 
     name: ClassVar[str] = "plenoctree"
-    fit_defaults: ClassVar[Mapping[str, Any]] = {"prune": 0.01}
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 192, "prune": 0.01}
     fit_options: ClassVar[frozenset[str]] = frozenset({"degree", "prune"})
     first_model: ClassVar[Literal["refused", "optional", "required"]] = "required"
     first_model_kinds: ClassVar[tuple[str, ...]] = ("hash_grid", "nerf")
@@ -87,6 +88,7 @@ class PlenOctree(OctreeSh):
             opacity=opacity,
             weights=weights,
             least=prune,
+            reach=cells_in_reach(field, box, shape),
         )
         if not len(leaves.density):
             expected = f"a field with cells more opaque than {opacity} in sight of a view"

@@ -101,8 +101,42 @@ def points_in(
     return points
 
 
+def cells_in_reach(
+    field: NeuralField, box: Array, shape: tuple[int, int, int]
+) -> NDArray[np.bool_] | None:
+    """(X, Y, Z) which cells touch one that the field's occupancy marks; None for all.
+
+    In the others extinction is 0 wherever it is read.
+
+    Args:
+        field: of networks.
+        box: (2, 3) in meters, of the cells.
+        shape: cells along each edge of the box.
+    """
+    occupied = field.occupied()
+    if occupied is None:
+        return None
+    lower, upper = field.box
+    touched: NDArray[np.bool_] = occupied.transpose(2, 1, 0) > 0  # [x, y, z]
+    for axis, (cells, marked) in enumerate(zip(shape, touched.shape, strict=True)):
+        edges = box[0, axis] + np.arange(cells + 1) * ((box[1, axis] - box[0, axis]) / cells)
+        at = (edges - lower[axis]) / (upper[axis] - lower[axis]) * marked
+        slack = 1e-4  # a point is rounded to float32 before its cell is looked up
+        first = np.clip(np.floor(at[:-1] - slack), 0, marked - 1).astype(np.int64)
+        last = np.clip(np.floor(at[1:] + slack), 0, marked - 1).astype(np.int64)
+        known = np.insert(np.cumsum(touched, axis=axis), 0, 0, axis=axis)
+        counts = known.take(last + 1, axis=axis) - known.take(first, axis=axis)
+        touched = counts > 0
+    return touched
+
+
 def visible_cells(
-    radiance: Radiance, box: Array, shape: tuple[int, int, int], *, opacity: float
+    radiance: Radiance,
+    box: Array,
+    shape: tuple[int, int, int],
+    *,
+    opacity: float,
+    reach: NDArray[np.bool_] | None = None,
 ) -> Cells:
     """The cells that are more opaque than `opacity` along their edge, at the mean of their points.
 
@@ -111,13 +145,13 @@ def visible_cells(
         box: (2, 3) in meters.
         shape: cells along each edge of the box.
         opacity: see above.
+        reach: (X, Y, Z) which cells are looked at; None for all.
     """
     edge = (box[1, 0] - box[0, 0]) / shape[0]
     found, values = [], []
-    total = int(np.prod(shape))
-    for first in range(0, total, AT_ONCE):
-        number = np.arange(first, min(first + AT_ONCE, total))
-        index = np.stack(np.unravel_index(number, shape), axis=1)
+    numbers = np.arange(np.prod(shape)) if reach is None else np.flatnonzero(reach)
+    for first in range(0, len(numbers), AT_ONCE):
+        index = np.stack(np.unravel_index(numbers[first : first + AT_ONCE], shape), axis=1)
         along = np.tile([0.0, 0.0, 1.0], (len(index), 1))
         sigma_t = np.stack(
             [radiance(points_in(box, shape, index, s), along)[0] for s in range(POINTS)], axis=1
@@ -125,6 +159,8 @@ def visible_cells(
         visible = -expm1(-edge * sigma_t.mean(axis=1, dtype=np.float64)) > opacity
         found.append(index[visible])
         values.append(sigma_t[visible])
+    if not found:
+        return Cells(box, shape, np.zeros((0, 3), np.int64), np.zeros((0, POINTS)))
     return Cells(box, shape, np.concatenate(found), np.concatenate(values))
 
 
@@ -174,6 +210,7 @@ def tabulated(
     opacity: float,
     weights: Callable[[Leaves], Array],
     least: float,
+    reach: NDArray[np.bool_] | None = None,
 ) -> Leaves:
     """The leaves of a field; raw densities are of a density scale of 1 / edge of a cell.
 
@@ -185,8 +222,9 @@ def tabulated(
         opacity: of a cell that is not empty, see `visible_cells`.
         weights: the greatest weight (N,) that each row of a tree has in any pixel.
         least: weight of a leaf that stays.
+        reach: (X, Y, Z) outside of which the field is empty; None for nowhere.
     """
-    cells = visible_cells(radiance, box, shape, opacity=opacity)
+    cells = visible_cells(radiance, box, shape, opacity=opacity, reach=reach)
     bare = np.zeros((len(cells.index), 1, 3))
     leaves, order = _leaves(cells, bare)
     cells = cells.kept(_scattered(weights(leaves) >= least, order))

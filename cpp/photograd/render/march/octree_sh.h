@@ -67,17 +67,15 @@ struct Segment {
 /// visit(segment) front to back, until less than `stop` is left of the ray; returns what is left.
 template <Real R, class Visit>
 R walk(const OctreeSh<R>& field, const R* origin, const R* direction, R stop, Visit&& visit) {
-    R tau = R(0), front = R(1);
+    R front = R(1);
     const auto meet = [&](std::int32_t leaf, R t0, R t1) {
         const std::int32_t row = field.row[leaf];
         if (row < 0) return true;
-        if (!(front > stop)) return false;
         const R sigma_t = field.density_scale * softplus(field.density[row]);
-        const R s = sigma_t * (t1 - t0), weight = front * -expm1(-s);
-        tau += s;
-        front = exp(-tau);
+        const R alpha = -expm1(-sigma_t * (t1 - t0)), weight = front * alpha;
+        front *= R(1) - alpha;
         visit(Segment<R>{leaf, row, t0, t1, sigma_t, weight, front});
-        return true;
+        return front > stop;
     };
     field.tree->traverse(origin, direction, R(0), std::numeric_limits<R>::infinity(), meet);
     return front;
@@ -87,11 +85,55 @@ template <int Degree, Real R>
 void color_of(const OctreeSh<R>& field, std::int32_t row, const R* Y, R* rgb) {
     constexpr int count = sh_count(Degree);
     const R* c = field.sh + std::int64_t(row) * count * 3;
-    R raw[3] = {R(0), R(0), R(0)};
-    for (int k = 0; k < count; ++k)
-        for (int a = 0; a < 3; ++a) raw[a] += Y[k] * c[3 * k + a];
-    for (int a = 0; a < 3; ++a) rgb[a] = sigmoid(raw[a]);
+    // Four lanes, which a compiler makes a vector of; the fourth is dropped. It is the next
+    // coefficient's first channel, which the last coefficient does not have.
+    R raw[4] = {R(0), R(0), R(0), R(0)};
+    for (int k = 0; k + 1 < count; ++k)
+        for (int a = 0; a < 4; ++a) raw[a] += Y[k] * c[3 * k + a];
+    for (int a = 0; a < 3; ++a) raw[a] += Y[count - 1] * c[3 * (count - 1) + a];
+    for (int a = 0; a < 4; ++a) raw[a] = sigmoid(raw[a]);
+    std::copy_n(raw, 3, rgb);
 }
+
+/// Colors of segments, which wait until their coefficients have come into the cache.
+template <int Degree, Real R>
+class DelayedColors {
+public:
+    DelayedColors(const OctreeSh<R>& field, const R* Y) : field_(field), Y_(Y) {}
+
+    void add(std::int32_t row, R weight) {
+        if (count_ == room) add_up();
+        constexpr int floats = 3 * sh_count(Degree), line = 64 / sizeof(R);
+        const R* c = field_.sh + std::int64_t(row) * floats;
+        for (int at = 0; at < floats; at += line) __builtin_prefetch(c + at);
+        __builtin_prefetch(c + floats - 1);
+        rows_[count_] = row;
+        weights_[count_++] = weight;
+    }
+    /// Writes the sum of weight times color, front to back.
+    void finish(R* color) {
+        add_up();
+        std::copy_n(sum_, 3, color);
+    }
+
+private:
+    static constexpr int room = 32;
+
+    void add_up() {
+        for (int i = 0; i < count_; ++i) {
+            R rgb[3];
+            color_of<Degree>(field_, rows_[i], Y_, rgb);
+            for (int a = 0; a < 3; ++a) sum_[a] += weights_[i] * rgb[a];
+        }
+        count_ = 0;
+    }
+
+    const OctreeSh<R>& field_;
+    const R* Y_;
+    std::int32_t rows_[room];
+    R weights_[room], sum_[3] = {R(0), R(0), R(0)};
+    int count_ = 0;
+};
 
 template <class Visit>
 void with_degree(int degree, Visit&& visit) {
@@ -235,17 +277,16 @@ void march_octree_sh(const OctreeSh<R>& field, const TreeRays<R>& rays, R stop,
         for_chunks(0, rays.count, [&](std::int64_t, std::int64_t begin, std::int64_t end) {
             for (std::int64_t ray = begin; ray < end; ++ray) {
                 const R* d = rays.unit + 3 * ray;
-                R Y[sh_count(Degree)], color[3] = {R(0), R(0), R(0)}, depth = R(0);
+                R Y[sh_count(Degree)], depth = R(0);
                 sh_basis<Degree>(d[0], d[1], d[2], Y);
+                octree_sh::DelayedColors<Degree, R> colors(field, Y);
                 out.transmittance[ray] =
                     octree_sh::walk(field, rays.origins + 3 * ray, rays.directions + 3 * ray, stop,
                                     [&](const octree_sh::Segment<R>& p) {
-                                        R rgb[3];
-                                        octree_sh::color_of<Degree>(field, p.row, Y, rgb);
-                                        for (int a = 0; a < 3; ++a) color[a] += p.weight * rgb[a];
+                                        colors.add(p.row, p.weight);
                                         depth += p.weight * p.middle();
                                     });
-                std::copy_n(color, 3, out.color + 3 * ray);
+                colors.finish(out.color + 3 * ray);
                 out.depth[ray] = depth;
             }
         });
