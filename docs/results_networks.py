@@ -42,7 +42,7 @@ THREAD_STEPS = 300
 FILE = "cost.json"
 LARGE = (256, 8)
 """Width and hidden layers of the density network of [Mildenhall2020]."""
-FRAMES, FEWEST, PATIENCE = 15, 3, 5.0
+FRAMES, FEWEST, PATIENCE = 60, 3, 5.0
 """So many frames are timed, or fewer, but no less than the second, after so many seconds."""
 
 
