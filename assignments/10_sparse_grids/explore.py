@@ -104,18 +104,6 @@ tree = mine.octree_from_dense(full)
 dense, *sparse = mine.active_stats(n, tree, values)
 leaves = int((tree <= 0).sum())
 print(f"bytes: dense {dense}; octree {sparse[0]}, rows {sparse[1]}, values {sparse[2]}")
-samples = mine.march(n, voxels, views)
-print(f"evaluated samples: {samples[0].mean():.0%} of all; octree: {len(tree)} nodes")
-
-# %% [markdown]
-# ## Your derivative
-# Of the loss with respect to the extinction of a grid of thin fog, summed over the height.
-
-# %%
-fog = np.argwhere(np.ones((16, 16, 16), bool))
-rays, target = smaller(16)
-_, slope = mine.loss_and_grad(np.tile(mine.START, (4096, 1)), mine.march(16, fog, rays), target)
-from_above = slope[:, 3].reshape(16, 16, 16).sum(axis=1)
 
 # %% [markdown]
 # ## The C++ core
@@ -241,15 +229,12 @@ def shown(axes, colors, shape, title):
 
 
 size = unseen[0].colors.shape[:2]
-figure = Figure(figsize=(3.7 * (len(found) + 2), 4), layout="constrained")
-panels = figure.subplots(1, len(found) + 2)
+figure = Figure(figsize=(3.7 * (len(found) + 1), 4), layout="constrained")
+panels = figure.subplots(1, len(found) + 1)
 shown(panels[0], colors, size, "held-out photograph")
-for axes, (name, grid) in zip(panels[1:], found.items(), strict=False):
+for axes, (name, grid) in zip(panels[1:], found.items(), strict=True):
     again = seen(grid, views)
     shown(axes, again, size, f"{name}: {decibels(again, colors):.1f} dB")
-end = np.abs(from_above).max()
-panels[-1].imshow(from_above.T, origin="lower", cmap="RdBu_r", vmin=-end, vmax=end)
-panels[-1].set(title="∂L/∂σ in fog, from above (blue: add)", xticks=[], yticks=[])
 figure.savefig("sparse.png", dpi=90)
 print("sparse.png: look at it")
 
