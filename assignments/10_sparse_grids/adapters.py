@@ -4,24 +4,18 @@ Runs beside your file; do not change or submit it. Arrays reach your functions a
 copies. A second call shows whether one was changed.
 """
 
-import numpy as np
 import sparse_grids as grids
-
-
-def _table(voxels):
-    empty = grids.new_table(len(voxels))
-    return grids.voxel_hash_insert(empty, voxels, np.arange(len(voxels)))
 
 
 def picture(n, voxels, values, rays):
     """(colors, wanted, step) of rays through a sparse grid: `march`, then `render`."""
-    samples = grids.march(n, voxels, _table(voxels), rays)
+    samples = grids.march(n, voxels, rays)
     return grids.render(values, samples), samples[0], samples[1]
 
 
 def gradient(n, voxels, values, rays, target):
     """(loss, d_values) of a sparse grid: `march`, then `loss_and_grad`."""
-    return grids.loss_and_grad(values, grids.march(n, voxels, _table(voxels), rays), target)
+    return grids.loss_and_grad(values, grids.march(n, voxels, rays), target)
 
 
 def next_start(n, voxels, values, rays, threshold, grow):
@@ -29,19 +23,12 @@ def next_start(n, voxels, values, rays, threshold, grow):
 
     rows are the old rows of the new voxels, -1 for new ones; lists, of unknown length.
     """
-    table = _table(voxels)
-    row, share = grids.shares(values, grids.march(n, voxels, table, rays))
+    row, share = grids.shares(values, grids.march(n, voxels, rays))
     found = grids.prune_and_dilate(n, voxels, row, share, threshold, grow)
-    return found, grids.voxel_hash_find(table, found)
+    return found, grids.find_rows(grids.row_table(n, voxels), found)
 
 
 def fit_again(*given):
     """Result of `fit_sparse` for the same arrays the second time."""
     grids.fit_sparse(*given)
     return grids.fit_sparse(*given)
-
-
-def insert_after(table, first, voxels, rows):
-    """Result of `voxel_hash_insert` for a table that other voxels were inserted in before."""
-    grids.voxel_hash_insert(table, first, rows)
-    return grids.voxel_hash_insert(table, voxels, rows)

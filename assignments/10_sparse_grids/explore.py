@@ -1,132 +1,109 @@
 # %% [markdown]
-# # A sparse scene, recovered
-# Photographs a scene defined by formulas and recovers it with your functions in three ways: with
-# all voxels, pruned early, and pruned and dilated. Where the C++ core is installed, its derivative
-# and its own recovery stand beside yours, and your voxels are written to an OpenVDB file and read
-# back. Never graded. `python explore.py` takes `--voxels` (per side, a power of two), `--steps` and
-# `--rounds`, `--threshold`, `--views`, `--size` (pixels per side), and `--capture DIR`: a folder
-# with `transforms.json` and its images, of a scene that extends `--box` from the origin.
+# # A table with toys, in a sparse grid
+# Recovers a sparse grid from photographs with your functions, coarse to fine: with dilation and
+# without. Where the C++ core is installed, it renders the photographs, and its own recovery with
+# twice the voxels per side stands beside yours. Never graded. `python explore.py` takes `--voxels`
+# (per side at the end, a power of two), `--rounds` and `--steps` at each resolution, `--threshold`,
+# `--rate` (the learning rate of sigma), with the core `--views` and `--size` (a power of two), and
+# `--capture DIR`: a folder with `transforms.json` and its images, of a scene that extends `--box`
+# from the origin.
 
 # %%
 import importlib
 import tempfile
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import sparse_grids as mine
 from matplotlib.figure import Figure
-from photograd_course.captures import all_around, rays_to_origin, read_capture
+from photograd_course.captures import read_capture
 from photograd_course.explore import option
 
-n, rounds, steps = option("voxels", 16), option("rounds", 8), option("steps", 5)
-threshold, views, size = option("threshold", 0.05), option("views", 16), option("size", 10)
-capture = option("capture", "")
+photographs = importlib.import_module("data.photographs")
+finest, rounds, steps = option("voxels", 32), option("rounds", 4), option("steps", 6)
+threshold, capture = option("threshold", 0.05), option("capture", "")
+mine.RATES[3] = option("rate", 2.0)
 
 # %% [markdown]
-# ## A scene
-# A ball, a ring around it, and a pole.
+# ## Photographs
 
 
 # %%
-def scene(n):
-    """(voxels, values) of the voxels that are not empty."""
-    every = np.argwhere(np.ones((n, n, n), bool))
-    x = (every + 0.5) / n * 2 - 1
-    around = np.hypot(x[:, 0] + 0.2, x[:, 1] + 0.1)
-    distance = {
-        (0.9, 0.6, 0.2): 0.42 - np.linalg.norm(x - np.array([-0.2, -0.1, 0.0]), axis=1),
-        (0.2, 0.5, 0.9): 0.12 - np.hypot(around - 0.65, x[:, 2]),
-        (0.3, 0.8, 0.3): np.where(abs(x[:, 2]) < 0.8, 0.12 - np.hypot(*(x[:, :2] - 0.65).T), -1),
-    }
-    values = np.zeros((len(x), 4))
-    for paint, depth in distance.items():
-        solid = 8 * np.clip(depth * n / 3 + 0.5, 0, 1)
-        values[solid > values[:, 3], :3] = paint
-        values[:, 3] = np.maximum(values[:, 3], solid)
-    return every[values[:, 3] > 0], values[values[:, 3] > 0]
-
-
-def cameras(count, size, turned=0.0):
-    """Rays (2, count size^2, 3) of cameras all around the scene."""
-    return rays_to_origin(3.2 * all_around(count, turned), size, 0.38)
-
-
-def table_of(voxels):
-    """A table in which voxel v has row v."""
-    empty = mine.new_table(len(voxels))
-    return mine.voxel_hash_insert(empty, voxels, np.arange(len(voxels)))
-
-
-def seen(n, voxels, values, rays):
-    """Colors of rays through a sparse grid."""
-    return mine.render(values, mine.march(n, voxels, table_of(voxels), rays))
+def rays_of(photos):
+    """Rays (2, R, 3) through all pixels of photographs, and their colors."""
+    ends = [photo.rays() for photo in photos]
+    origin, direction = (np.concatenate(each) for each in zip(*ends, strict=True))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    return np.stack([origin, direction]), np.concatenate([p.colors.reshape(-1, 3) for p in photos])
 
 
 def decibels(a, b):
     return -10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30))
 
 
-truth = scene(2 * n)
-rays, unseen = cameras(views, size), cameras(6, 16, 1.0)
-target, hidden = seen(2 * n, *truth, rays), seen(2 * n, *truth, unseen)
-print(f"scene: {views} photographs of {size} x {size}, all voxels {n**3}")
+def seen(grid, rays):
+    """Colors of rays through a grid (n, voxels, values)."""
+    n, voxels, values = grid
+    return mine.render(values, mine.march(n, voxels, rays))
+
+
+photos, unseen = (photographs.read(each) for each in (photographs.TRAINING, photographs.HELD_OUT))
+try:
+    fields = importlib.import_module("photograd.fields.sparse_sh")
+    photos = photographs.render(option("views", 40), option("size", 64))
+except (ImportError, AttributeError):
+    fields = None
+views, colors = rays_of(unseen[2:])
+print(f"photographs: {len(photos)} of {photos[0].colors.shape[1]} x {photos[0].colors.shape[0]}")
 
 # %% [markdown]
-# ## Memory
-# Bytes of the scene itself, in four forms. The dense form needs no other structure; the sparse one
-# needs the octree, the table and the values together.
+# ## Recovery, coarse to fine
+# At each resolution the photographs are made as small as the grid.
+
 
 # %%
-voxels, values = scene(n)
-full = np.zeros((n, n, n), bool)
-full[tuple(voxels.T)] = True
-tree = mine.octree_from_dense(full)
-dense, *sparse = mine.active_stats(n, tree, table_of(voxels), values)
-leaves = int((tree <= 0).sum())
-print(f"bytes:  dense {dense}; octree {sparse[0]}, table {sparse[1]}, values {sparse[2]}")
-wanted, *_ = mine.march(n, voxels, table_of(voxels), unseen)
-print(f"evaluated samples: {wanted.mean():.0%} of all; octree: {len(tree)} nodes, {leaves} leaves")
+def smaller(n):
+    """(rays, colors) of the photographs with at most n x n pixels."""
+    return rays_of(photographs.smaller(photos, min(n, len(photos[0].colors))))
 
-# %% [markdown]
-# ## Three recoveries
 
-# %%
-every = np.argwhere(np.ones((n, n, n), bool))
-start = np.tile(mine.START, (len(every), 1))
-plans = {
-    "all voxels": (1, rounds * steps, 0.0, 0),
-    "pruned": (rounds, steps, threshold, 0),
-    "pruned and dilated": (rounds, steps, threshold, 1),
-}
+def recover(fit, rays_at, finest, grow):
+    """(n, voxels, values) after all resolutions; `rays_at` gives (rays, colors) for each."""
+    n = min(16, finest)
+    voxels = np.argwhere(np.ones((n, n, n), bool))
+    values = np.tile(mine.START, (len(voxels), 1))
+    while True:
+        rays, target = rays_at(n)
+        voxels, values = fit(n, voxels, values, rays, target, rounds, steps, threshold, grow)[:2]
+        if n >= finest:
+            return n, voxels, values
+        n, voxels, values = mine.refine(n, voxels, values, rays, threshold)
+
+
 found = {}
-for name, plan in plans.items():
+for name, grow in (("pruned and dilated", 1), ("pruned alone", 0)):
     before = time.perf_counter()
-    found[name] = mine.fit_sparse(n, every, start, rays, target, *plan)
-    seconds = time.perf_counter() - before
+    found[name] = recover(mine.fit_sparse, smaller, finest, grow)
+    score = decibels(seen(found[name], views), colors)
     print(
-        f"{name}: {len(found[name][0])} voxels, {seconds:.1f} s, "
-        f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on held-out views"
+        f"{name}: {len(found[name][1])} of {finest**3} voxels, "
+        f"{time.perf_counter() - before:.1f} s, {score:.1f} dB on the held-out photograph"
     )
 
 # %% [markdown]
-# ## Your derivative
-# A guess that lacks the ring and the pole, and the derivative of its loss with respect to
-# extinction: of the voxels that exist, and of all voxels, new ones with the color of START.
+# ## Memory
+# Bytes of your grid in both forms: dense, or octree, rows and values together.
 
 # %%
-across = (np.arange(32) + 0.5) / 16 - 1
-v, u = np.meshgrid(-across, across, indexing="ij")
-ahead = np.stack([u.ravel(), v.ravel(), np.full(1024, 3.0)], axis=1)
-parallel = np.stack([ahead, np.tile([0.0, 0.0, -1.0], (1024, 1))])
-photograph = seen(2 * n, *truth, parallel)
-ball = values[:, 0] > 0.5
-guess = voxels[ball], values[ball]
-samples = mine.march(n, guess[0], table_of(guess[0]), parallel)
-_, slope = mine.loss_and_grad(guess[1], samples, photograph)
-filled = start * [1, 1, 1, 0]
-filled[mine.voxel_hash_find(table_of(every), guess[0])] = guess[1]
-_, told = mine.loss_and_grad(filled, mine.march(n, every, table_of(every), parallel), photograph)
+n, voxels, values = found["pruned and dilated"]
+full = np.zeros((n, n, n), bool)
+full[tuple(voxels.T)] = True
+tree = mine.octree_from_dense(full)
+dense, *sparse = mine.active_stats(n, tree, values)
+leaves = int((tree <= 0).sum())
+print(f"bytes: dense {dense}; octree {sparse[0]}, rows {sparse[1]}, values {sparse[2]}")
 
 # %% [markdown]
 # ## The C++ core
@@ -135,17 +112,16 @@ _, told = mine.loss_and_grad(filled, mine.march(n, every, table_of(every), paral
 
 # %%
 def core_field(n, voxels, values):
-    """A field of the core with these voxels, and their rows there."""
-    fields = importlib.import_module("photograd.fields.sparse_sh")
+    """A field of the core with these voxels, their rows there, and its unit of color."""
     marches = importlib.import_module("photograd.fields.march")
     active = importlib.import_module("photograd.fields.active_voxels")
-    sh = importlib.import_module("photograd.sh")
+    unit = importlib.import_module("photograd.sh").Y_0
     mask = np.zeros((n, n, n), bool)
     mask[tuple(voxels.T)] = True
     kept = active.ActiveVoxels(mask)
     rows = kept.rows[tuple(voxels.T)]
     density, color = np.zeros(len(rows)), np.zeros((len(rows), 1, 3))
-    density[rows], color[rows, 0] = values[:, 3], values[:, :3] / sh.Y_0
+    density[rows], color[rows, 0] = values[:, 3], values[:, :3] / unit
     policy = marches.MarchPolicy(
         box=((-1.0,) * 3, (1.0,) * 3),
         dt=1 / n * (1 - 1e-12),
@@ -154,7 +130,7 @@ def core_field(n, voxels, values):
         density_activation="identity",
         color_activation="identity",
     )
-    return fields.SparseSh(kept, density, color, policy), rows, sh.Y_0
+    return fields.SparseSh(kept, density, color, policy), rows, unit
 
 
 def core_loss_and_grad(n, voxels, values, rays, target):
@@ -170,23 +146,23 @@ def core_loss_and_grad(n, voxels, values, rays, target):
     return np.mean(residual**2), d_values, field.greatest_weights([batch])[rows]
 
 
-def core_fit(n, voxels, numbers, rays, target, rounds, steps, threshold):
+def core_fit(n, voxels, values, rays, target, rounds, steps, threshold, _):
     """The recovery with the derivatives, shares, pruning and dilation of the core."""
-    existing = importlib.import_module("photograd.fields.active_voxels")
+    dilated = importlib.import_module("photograd.fields.active_voxels").dilated
     for left in reversed(range(rounds)):
         optimizer = mine.Adam()
         for _ in range(steps):
-            slope = core_loss_and_grad(n, voxels, numbers, rays, target)[1]
-            numbers = optimizer.step(numbers, slope)
-            numbers[:, 3] = np.clip(numbers[:, 3], 0, None)
+            slope = core_loss_and_grad(n, voxels, values, rays, target)[1]
+            values = optimizer.step(values, slope)
+            values[:, 3] = np.clip(values[:, 3], 0, None)
         if left:
-            most = core_loss_and_grad(n, voxels, numbers, rays, target)[2]
+            most = core_loss_and_grad(n, voxels, values, rays, target)[2]
             mask, dense = np.zeros((n, n, n), bool), np.tile(mine.START, (n, n, n, 1))
             mask[tuple(voxels[most > threshold].T)] = True
-            dense[tuple(voxels.T)] = numbers
-            voxels = np.argwhere(existing.dilated(mask))
-            numbers = dense[tuple(voxels.T)]
-    return voxels, numbers
+            dense[tuple(voxels.T)] = values
+            voxels = np.argwhere(dilated(mask))
+            values = dense[tuple(voxels.T)]
+    return voxels, values
 
 
 def through_openvdb(n, voxels, values):
@@ -212,32 +188,33 @@ def through_openvdb(n, voxels, values):
     return np.concatenate([part for part, _ in parts], axis=1)
 
 
-core_slope = core_found = None
-try:
-    octrees = importlib.import_module("photograd.grids.octree")
-    _, core_slope, core_worth = core_loss_and_grad(n, *guess, parallel, photograph)
-except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
-    print("core not installed")
-else:
-    off = np.linalg.norm(core_slope - slope) / max(np.linalg.norm(core_slope), 1e-300)
-    row, share = mine.shares(guess[1], samples)
-    largest, order = np.zeros(len(guess[0]) + 1), np.argsort(share, axis=None)
+if fields is not None:
+    # Along an axis, where the equal steps of both are as long.
+    v, u = np.meshgrid(*[(np.arange(32) + 0.5) / 16 - 1] * 2, indexing="ij")
+    ahead = np.stack([u.ravel(), np.full(1024, 3.0), v.ravel()], axis=1)
+    parallel = np.stack([ahead, np.tile([0.0, -1.0, 0.0], (1024, 1))])
+    samples, gray = mine.march(n, voxels, parallel), np.full((1024, 3), 0.5)
+    row, share = mine.shares(values, samples)
+    largest, order = np.zeros(len(voxels) + 1), np.argsort(share, axis=None)
     largest[row.ravel()[order]] = share.ravel()[order]  # the largest is written last
+    _, yours = mine.loss_and_grad(values, samples, gray)
+    _, its, worth = core_loss_and_grad(n, voxels, values, parallel, gray)
+    off = np.linalg.norm(its - yours) / max(np.linalg.norm(its), 1e-300)
     print(
         f"core: its derivative is {off:.1e} from yours, "
-        f"its largest shares {np.abs(core_worth - largest[:-1]).max():.1e}"
+        f"its largest shares {np.abs(worth - largest[:-1]).max():.1e}"
     )
+    octrees = importlib.import_module("photograd.grids.octree")
     its = octrees.Octree.from_dense(full[..., None]).statistics().leaves
     print(f"core: its octree has {its} leaves, yours {leaves}")
-    again = through_openvdb(n, *found["pruned and dilated"][:2])
-    same = np.array_equal(again, found["pruned and dilated"][1].astype(np.float32))
+    same = np.array_equal(through_openvdb(n, voxels, values), values.astype(np.float32))
     print("values are the same" if same else "values differ")
     before = time.perf_counter()
-    core_found = core_fit(n, every, start, rays, target, rounds, steps, threshold)
+    found["core"] = recover(core_fit, smaller, 2 * finest, 1)
     print(
-        f"core, pruned and dilated: {len(core_found[0])} voxels, "
+        f"core, pruned and dilated: {len(found['core'][1])} of {8 * finest**3} voxels, "
         f"{time.perf_counter() - before:.1f} s, "
-        f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on held-out views"
+        f"{decibels(seen(found['core'], views), colors):.1f} dB on the held-out photograph"
     )
 
 # %% [markdown]
@@ -245,43 +222,19 @@ else:
 
 
 # %%
-def shown(axes, colors, title):
-    """A square image of linear radiance."""
-    side = round(len(colors) ** 0.5)
-    axes.imshow(np.clip(colors, 0, 1).reshape(side, side, 3) ** (1 / 2.2))
+def shown(axes, colors, shape, title):
+    """An image of linear radiance."""
+    axes.imshow(np.clip(colors, 0, 1).reshape(*shape, 3) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
 
 
-def signed(axes, voxels, values, end, title):
-    """Values summed along the line of sight: blue negative, red positive."""
-    flat = np.zeros((n, n))
-    np.add.at(flat, tuple(voxels[:, :2].T), values)
-    axes.imshow(flat.T, origin="lower", cmap="RdBu_r", vmin=-end, vmax=end)
-    axes.set(title=title, xticks=[], yticks=[])
-
-
-figure = Figure(figsize=(15, 6.4), layout="constrained")
-panels = figure.subplots(2, 5)
-view = cameras(3, 48, 0.5)[:, 2304:4608]
-shown(panels[0, 0], seen(2 * n, *truth, view), "truth, a new view")
-for axes, (name, given) in zip(panels[0, 1:], found.items(), strict=False):
-    shown(axes, seen(n, *given[:2], view), f"yours: {name}")
-if core_found is None:
-    panels[0, 4].text(0.5, 0.5, "core not installed", ha="center")
-    panels[0, 4].set_axis_off()
-else:
-    shown(panels[0, 4], seen(n, *core_found, view), "the core's: pruned and grown")
-shown(panels[1, 0], photograph, "photograph")
-shown(panels[1, 1], seen(n, *guess, parallel), "a guess")
-end = max(np.abs(slope[:, 3]).max() * 4, 1e-300)
-signed(panels[1, 2], guess[0], slope[:, 3], end, "your derivative by extinction")
-if core_slope is None:
-    panels[1, 3].text(0.5, 0.5, "core not installed", ha="center")
-    panels[1, 3].set_axis_off()
-else:
-    signed(panels[1, 3], guess[0], core_slope[:, 3], end, "the core's, on the same scale")
-end = max(np.abs(told[:, 3]).max() * 4, 1e-300)
-signed(panels[1, 4], every, told[:, 3], end, "if all existed, in gray")
+size = unseen[0].colors.shape[:2]
+figure = Figure(figsize=(3.7 * (len(found) + 1), 4), layout="constrained")
+panels = figure.subplots(1, len(found) + 1)
+shown(panels[0], colors, size, "held-out photograph")
+for axes, (name, grid) in zip(panels[1:], found.items(), strict=True):
+    again = seen(grid, views)
+    shown(axes, again, size, f"{name}: {decibels(again, colors):.1f} dB")
 figure.savefig("sparse.png", dpi=90)
 print("sparse.png: look at it")
 
@@ -290,38 +243,29 @@ print("sparse.png: look at it")
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
 # and a field of view or a focal length in pixels. Transparent pixels count as black.
 
-
 # %%
-def photographs(folder, reach):
-    """Rays (2, R, 3), scaled so that the scene fills the cube, colors (R, 3), picture sizes."""
-    photos = list(read_capture(folder, 2 * size, views))
-    origins, directions = (
-        np.concatenate(each) for each in zip(*(p.rays() for p in photos), strict=True)
-    )
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    colors = np.concatenate([photo.colors.reshape(-1, 3) for photo in photos])
-    return np.stack([origins / reach, directions]), colors, [p.colors.shape[:2] for p in photos]
-
-
 if capture:
-    rays, target, sizes = photographs(Path(capture), option("box", 1.0))
-    plan = (rounds, steps, threshold, 1)
-    own = mine.fit_sparse(n, every, start, rays, target, *plan)
-    again = seen(n, *own[:2], rays)
+    photos = list(read_capture(Path(capture), finest, option("views", 40)))
+
+    def own_rays(n):
+        """(rays, colors) of the photographs, n pixels wide, scaled so that they fill the cube."""
+        rays, target = rays_of(list(read_capture(Path(capture), n, option("views", 40))))
+        return np.stack([rays[0] / option("box", 1.0), rays[1]]), target
+
+    own = recover(mine.fit_sparse, own_rays, finest, 1)
+    rays, target = own_rays(finest)
+    ends = np.cumsum([0] + [photo.colors[..., 0].size for photo in photos])
+    again = np.concatenate([seen(own, rays[:, a:b]) for a, b in pairwise(ends)])
     print(
-        f"capture: {len(sizes)} photographs, {len(own[0])} of {n**3} voxels, "
+        f"capture: {len(photos)} photographs, {len(own[1])} of {own[0] ** 3} voxels, "
         f"{decibels(0 * target, target):.1f} dB for black, "
         f"{decibels(again, target):.1f} dB recovered"
     )
     figure = Figure(figsize=(9, 6), layout="constrained")
     panels = figure.subplots(2, 3)
-    ends = np.cumsum([0] + [a * b for a, b in sizes])
-    for column, k in enumerate(np.linspace(0, len(sizes) - 1, 3).astype(int)):
-        for axes, colors, title in zip(
-            panels[:, column], (target, again), ("photograph", "recovered"), strict=True
-        ):
-            picture = colors[ends[k] : ends[k + 1]].reshape(*sizes[k], 3)
-            axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
-            axes.set(xticks=[], yticks=[], title=title)
+    for column, k in enumerate(np.linspace(0, len(photos) - 1, 3).astype(int)):
+        part, shape = slice(ends[k], ends[k + 1]), photos[k].colors.shape[:2]
+        shown(panels[0, column], target[part], shape, "photograph")
+        shown(panels[1, column], again[part], shape, "recovered")
     figure.savefig("capture.png", dpi=90)
     print("capture.png: photographs, and the same views of the recovered grid")

@@ -2,11 +2,75 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from types import ModuleType
+from typing import Any
 
 import numpy as np
-from photograd_course.captures import all_around, rays_to_origin
+from matplotlib.axes import Axes
+from photograd_course.assignment.load import load_module
+from photograd_course.build.kits import source_folders
+from photograd_course.captures import Photograph, all_around, rays_to_origin
 from photograd_course.viz.handout import Array
+
+
+def _photographs() -> ModuleType:
+    """`data/photographs.py`."""
+    file = source_folders()["10_sparse_grids"] / "data" / "photographs.py"
+    return load_module("photographs", file.read_text("utf-8"), {"__file__": str(file)})
+
+
+PHOTOGRAPHS: Any = _photographs()
+LEVELS = ((16, 8, 3), (32, 3, 8))  # pixels and voxels along a side, rounds, steps
+
+
+def rays_of(photographs: Sequence[Photograph]) -> tuple[Array, Array]:
+    """Rays (2, R, 3) through all pixels, and their colors (R, 3)."""
+    ends = [photo.rays() for photo in photographs]
+    origin, direction = (np.concatenate(each) for each in zip(*ends, strict=True))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    colors = np.concatenate([photo.colors.reshape(-1, 3) for photo in photographs])
+    return np.stack([origin, direction]), colors
+
+
+def training(size: int, every: int = 1) -> tuple[Array, Array]:
+    """Rays and colors of the photographs to recover from, made smaller."""
+    photos = PHOTOGRAPHS.read(PHOTOGRAPHS.TRAINING)[::every]
+    return rays_of(PHOTOGRAPHS.smaller(photos, size))
+
+
+@contextmanager
+def faster(module: ModuleType) -> Iterator[None]:
+    """A higher learning rate of sigma: toys are opaque."""
+    before = module.RATES.copy()
+    module.RATES[3] = 2.0
+    yield
+    module.RATES[:] = before
+
+
+def toys(module: ModuleType, grow: int) -> tuple[int, Array, Array]:
+    """(n, voxels, values) of the table with toys, recovered coarse to fine."""
+    n = 16
+    voxels = np.argwhere(np.ones((n, n, n), bool))
+    values = np.tile(module.START, (len(voxels), 1))
+    with faster(module):
+        for size, rounds, steps in LEVELS:
+            rays, target = training(size)
+            if size > n:
+                n, voxels, values = module.refine(n, voxels, values, rays, 0.05)
+            voxels, values, _ = module.fit_sparse(
+                n, voxels, values, rays, target, rounds, steps, 0.05, grow
+            )
+    return n, voxels, values
+
+
+def show(axes: Axes, colors: Array, title: str) -> None:
+    """A square image of linear radiance."""
+    side = round(len(colors) ** 0.5)
+    screen = np.clip(colors, 0, 1).reshape(side, side, 3) ** (1 / 2.2)
+    axes.imshow(screen, interpolation="nearest")
+    axes.set(xticks=[], yticks=[], title=title)
 
 
 def gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
@@ -28,6 +92,21 @@ def shell(n: int) -> Array:
     return np.abs(away - 0.72) < 0.9 / n
 
 
+def one_cell(n: int) -> Array:
+    """A cube of cells of which one is full."""
+    full = np.zeros((n, n, n), bool)
+    full[1, 2, 0] = True
+    return full
+
+
+def rays_in_slice(n: int) -> tuple[Array, Array]:
+    """(first, stride) of four rays through the middle slice of n cells."""
+    height = np.array([3.3, 9.7, 16.4, 24.1])
+    first = np.stack([np.full(4, 0.27), height, np.full(4, n / 2 + 0.5)], axis=1)
+    tilt = np.array([0.05, 0.03, -0.02, -0.04])
+    return first, np.stack([np.full(4, 0.493), 0.493 * tilt, np.zeros(4)], axis=1)
+
+
 def leaves_in_slice(
     module: ModuleType, tree: Array, n: int, k: int
 ) -> list[tuple[tuple[float, float], float, bool]]:
@@ -36,27 +115,6 @@ def leaves_in_slice(
     full, low, side = module.octree_leaf(tree, n, cells)
     rows = np.unique(np.column_stack([low[:, :2], side, full]), axis=0)
     return [((x, y), s, bool(f)) for x, y, s, f in rows]
-
-
-def looks(
-    module: ModuleType, rng: np.random.Generator, slots: int, count: int
-) -> tuple[float, float]:
-    """Mean number of slots visited by searches for voxels in the table and for others."""
-    voxels = np.unique(rng.integers(-500, 500, (2 * count + 2000, 3)), axis=0)
-    voxels = rng.permutation(voxels)
-    table = np.zeros((slots, 4), np.int64)
-    table[:, 3] = -1
-    table = module.voxel_hash_insert(table, voxels[:count], np.arange(count))
-    taken = table[:, 3] >= 0
-    start = module.hash_slot(voxels, slots)
-    place = np.flatnonzero(taken)
-    here = np.zeros(count, int)
-    here[table[place, 3]] = place
-    hits = (here - start[:count]) % slots + 1
-    free = np.flatnonzero(~taken)
-    ahead = np.searchsorted(free, start[count:]) % len(free)
-    misses = (free[ahead] - start[count:]) % slots + 1
-    return float(hits.mean()), float(misses.mean())
 
 
 def cameras(views: int, size: int, turned: float = 0.0) -> Array:
@@ -75,34 +133,6 @@ def ball_and_ring(n: int) -> tuple[Array, Array]:
     values[:, :3] = np.where((ball >= ring)[:, None], (0.9, 0.6, 0.25), (0.35, 0.55, 0.9))
     values[:, 3] = 8 * np.maximum(ball, ring)
     return every[values[:, 3] > 0], values[values[:, 3] > 0]
-
-
-def rods_of(n: int) -> tuple[Array, Array]:
-    """(voxels, values): three rods that pass each other."""
-    every = np.argwhere(np.ones((n, n, n), bool))
-    x = (every + 0.5) / n * 2 - 1
-    values = np.zeros((len(x), 4))
-    rods = (
-        ((0.9, 0.5, 0.2), (-0.3, 0.25)),
-        ((0.3, 0.8, 0.3), (0.35, -0.3)),
-        ((0.3, 0.5, 0.9), (0.1, 0.4)),
-    )
-    for axis, (paint, place) in enumerate(rods):
-        away = np.linalg.norm(np.delete(x, axis, axis=1) - place, axis=1)
-        inside = np.clip((0.17 - away) * n / 3 + 0.5, 0, 1) * (np.abs(x[:, axis]) < 0.75)
-        values[inside > 0, :3] = paint
-        values[:, 3] = np.maximum(values[:, 3], 8 * inside)
-    return every[values[:, 3] > 0], values[values[:, 3] > 0]
-
-
-def samples_of(module: ModuleType, n: int, voxels: Array, rays: Array) -> tuple[Array, ...]:
-    empty = module.new_table(len(voxels))
-    table = module.voxel_hash_insert(empty, voxels, np.arange(len(voxels)))
-    return module.march(n, voxels, table, rays)
-
-
-def picture(module: ModuleType, n: int, found: tuple[Array, ...], rays: Array) -> Array:
-    return module.render(found[1], samples_of(module, n, found[0], rays))
 
 
 def decibels(a: Array, b: Array) -> float:

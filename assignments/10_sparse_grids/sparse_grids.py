@@ -1,15 +1,16 @@
-"""Sparse volumes: octree, voxel hash table, empty-space skipping, pruning and dilation.
+"""Sparse volumes: octree, empty-space skipping, pruning, dilation, and a recovery with them.
 
 A volume fills the cube from -1 to 1 in x, y and z with n x n x n voxels, n a power of two. Points
 are measured in *cells*: (0, 0, 0) is one corner of the cube and (n, n, n) the opposite one; cell
 (i, j, k) extends from i to i + 1 along x and so on, and voxel (i, j, k) has its value at the center
 of it. Rays, arguments of `march` and `fit_sparse`, are in the units of the cube instead. A *sparse
 grid* is a list of active voxels (V, 3), their values (V, 4) with channels r, g, b and sigma, the
-extinction per unit of length, and a hash table that maps a voxel to its row. Absent voxels are
-empty: all four numbers are 0 there, outside the cube as well.
+extinction per unit of length, and a table that maps a voxel to its row. Absent voxels are empty:
+all four numbers are 0 there, outside the cube as well.
 
-Your tasks are six functions, one section of the handout each; `photograd course check 10` tells how
-far you are. The other functions are given and stay as they are. Values are float64, indices int64.
+Your tasks are five functions, one section of the handout each; `photograd course check 10` tells
+how far you are. The other functions are given and stay as they are. Values are float64, indices
+int64.
 """
 
 from __future__ import annotations
@@ -25,8 +26,6 @@ Tree = Annotated[np.ndarray, "N"]  # int64
 Vectors = Annotated[np.ndarray, "R 3"]
 Voxels = Annotated[np.ndarray, "V 3"]  # int64
 Values = Annotated[np.ndarray, "V C"]
-Table = Annotated[np.ndarray, "slots 4"]  # int64
-Rows = Annotated[np.ndarray, "M"]  # int64
 Corners = Annotated[np.ndarray, "8 M"]  # int64 rows, or weights
 Samples = Annotated[np.ndarray, "M C"]
 Colors = Annotated[np.ndarray, "R 3"]
@@ -49,7 +48,7 @@ def octree_from_dense(full: Cube) -> Tree:
     Returns:
         tree (N,) of int64. Node 0 is the whole cube. tree[node] is EMPTY or FULL for a leaf, a
         cube of equal cells that is as large as possible; otherwise it is the index of the first of
-        eight consecutive children: child 4 a + 2 b + c, where a, b and c are 1 in the upper half
+        eight consecutive children: child 4 X + 2 Y + Z, where X, Y and Z are 1 in the upper half
         along x, y and z. Handout equations (4) to (6).
     """
     # >>> solution 10.1
@@ -127,69 +126,23 @@ def skip_empty(leaf: Leaf, first: Vectors, stride: Vectors, count: int) -> Wante
     # <<< solution
 
 
-def new_table(count):
-    """An empty hash table with about twice as many slots as `count` voxels.
+def row_table(n, voxels):
+    """Where the values of each voxel are: an array of int64 with its row, -1 for an absent one.
 
-    A table is an array (slots, 4) of int64: x, y, z of a voxel and its row; row -1: a free slot.
+    It has n + 2 entries along each axis: voxel (i, j, k) is entry [i + 1, j + 1, k + 1], and the
+    outermost layer stands for voxels just outside of the cube, which are always absent.
     """
-    table = np.zeros((2 * count + 1, 4), np.int64)
-    table[:, 3] = -1
+    table = np.full((n + 2, n + 2, n + 2), -1, np.int64)
+    table[tuple(voxels.T + 1)] = np.arange(len(voxels))
     return table
 
 
-def hash_slot(voxels, slots):
-    """The hash function: the first slot (M,) to try for voxels (M, 3), any integers."""
-    x, y, z = voxels.T
-    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) % slots
+def find_rows(table, voxels):
+    """The rows (M,) of voxels (M, 3) by a table of `row_table`; -1 for absent ones.
 
-
-def voxel_hash_find(table, voxels):
-    """The rows (M,) of voxels (M, 3); -1 for those that are not in the table.
-
-    A search visits slot `hash_slot`, then the next ones, after the last slot 0, until it finds the
-    voxel or a free slot.
+    Indices go from -1 to n.
     """
-    rows, looking = np.full(len(voxels), -1, np.int64), np.arange(len(voxels))
-    slot = hash_slot(voxels, len(table))
-    for _ in range(len(table)):
-        entry = table[slot]
-        taken = entry[:, 3] >= 0
-        same = taken & (entry[:, :3] == voxels[looking]).all(axis=1)
-        rows[looking[same]] = entry[same, 3]
-        on = taken & ~same
-        looking, slot = looking[on], (slot[on] + 1) % len(table)
-        if not len(looking):
-            break
-    return rows
-
-
-def voxel_hash_insert(table: Table, voxels: Voxels, rows: Rows) -> Table:
-    """Insert voxels into a hash table, so that `voxel_hash_find` finds their rows.
-
-    Args:
-        table: (slots, 4); it must not change.
-        voxels: (M, 3); one that is in the table already, or occurs twice, gets the latest row.
-        rows: (M,), 0 or more.
-
-    Returns:
-        the new table, of the same shape; handout equation (9).
-
-    Raises:
-        ValueError: a voxel is new and no slot is free.
-    """
-    # >>> solution 10.3
-    table = table.copy()
-    slots = hash_slot(voxels, len(table))
-    for voxel, row, slot in zip(voxels, rows, slots, strict=True):
-        for probe in range(len(table)):
-            entry = table[(slot + probe) % len(table)]
-            if entry[3] < 0 or (entry[:3] == voxel).all():
-                entry[:3], entry[3] = voxel, row
-                break
-        else:
-            raise ValueError("no slot is free")
-    return table
-    # <<< solution
+    return table[tuple(voxels.T + 1)]
 
 
 def corners(table, points):
@@ -201,7 +154,7 @@ def corners(table, points):
     part = points - 0.5 - low
     row, weight = [], []
     for corner in np.ndindex(2, 2, 2):
-        row.append(voxel_hash_find(table, low + corner))
+        row.append(find_rows(table, low + corner))
         weight.append(np.prod(np.where(corner, part, 1 - part), axis=1))
     return np.stack(row), np.stack(weight)
 
@@ -214,7 +167,7 @@ def sample_sparse(values, row, weight):
         row, weight: (8, M); row -1 for an absent voxel.
     """
     padded = np.concatenate([values, np.zeros((1, values.shape[1]))])  # row -1 is the last one
-    return np.einsum("em,emc->mc", weight, padded[row])
+    return sum(w[:, None] * padded[r] for w, r in zip(weight, row, strict=True))
 
 
 def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples) -> Values:
@@ -226,10 +179,10 @@ def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples)
         g: (M, C), the derivative of some loss with respect to each sample.
 
     Returns:
-        (V, C), the derivative of that loss with respect to each value; handout equations (10) and
-        (11).
+        (V, C), the derivative of that loss with respect to each value; handout equations (9) and
+        (10).
     """
-    # >>> solution 10.4
+    # >>> solution 10.3
     known = row >= 0
     d_values = np.zeros((count, g.shape[1]))
     parts = weight[:, :, None] * g
@@ -254,10 +207,10 @@ def prune_and_dilate(
             by at most this; 0 or more.
 
     Returns:
-        (W, 3) of int64, each voxel once, ordered by x, then y, then z; handout equations (12) and
-        (13).
+        (W, 3) of int64, each voxel once, ordered by x, then y, then z; handout equations (11) and
+        (12).
     """
-    # >>> solution 10.5
+    # >>> solution 10.4
     worth = np.zeros(len(voxels))
     np.maximum.at(worth, row[row >= 0], share[row >= 0])
     stays = voxels[worth > threshold]
@@ -270,7 +223,7 @@ def prune_and_dilate(
     # <<< solution
 
 
-def march(n, voxels, table, rays):
+def march(n, voxels, rays):
     """Samples of rays in a sparse grid, in the cells that active voxels affect, no others.
 
     A ray is cut into 2 n equal steps between its entry and its exit of the cube, with a sample at
@@ -278,8 +231,7 @@ def march(n, voxels, table, rays):
 
     Args:
         n: voxels per side.
-        voxels: (V, 3), the active ones.
-        table: maps them to their rows.
+        voxels: (V, 3), the active ones; their rows are those of this list.
         rays: (2, R, 3), origins and unit directions, in the units of the cube from -1 to 1, not in
             cells; rays that miss the cube have no samples.
 
@@ -306,7 +258,8 @@ def march(n, voxels, table, rays):
         lambda points: octree_leaf(tree, n, points), first[hits], stride[hits], 2 * n
     )
     ray, k = np.nonzero(wanted)
-    return wanted, step, *corners(table, first[ray] + k[:, None] * stride[ray])
+    points = first[ray] + k[:, None] * stride[ray]
+    return wanted, step, *corners(row_table(n, voxels), points)
 
 
 def _along_rays(values, samples):
@@ -402,13 +355,12 @@ def fit_sparse(
 
     Returns:
         (voxels, values, losses): of the last round; losses (rounds * steps,), before each step.
-        Handout equations (14) to (16).
+        Handout equations (13) to (15).
     """
-    # >>> solution 10.6
+    # >>> solution 10.5
     losses = []
     for number in range(rounds):
-        table = voxel_hash_insert(new_table(len(voxels)), voxels, np.arange(len(voxels)))
-        samples = march(n, voxels, table, rays)
+        samples = march(n, voxels, rays)
         adam = Adam()
         for _ in range(steps):
             value, d_values = loss_and_grad(values, samples, target)
@@ -417,13 +369,29 @@ def fit_sparse(
             losses.append(value)
         if number < rounds - 1:
             chosen = prune_and_dilate(n, voxels, *shares(values, samples), threshold, grow)
-            old = voxel_hash_find(table, chosen)
+            old = find_rows(row_table(n, voxels), chosen)
             values = np.where(old[:, None] >= 0, values[old], START)
             voxels = chosen
     return voxels, values, np.array(losses)
     # <<< solution
 
 
-def active_stats(n, tree, table, values):
-    """Bytes of a volume: (dense, octree, hash table, values), 8 for each number."""
-    return 8 * 4 * n**3, 8 * tree.size, 8 * table.size, 8 * values.size
+def refine(n, voxels, values, rays, threshold):
+    """Twice the resolution: voxels that matter to these rays, each divided into eight.
+
+    Args:
+        n, voxels, values: a sparse grid.
+        rays, threshold: a voxel is kept if its largest share in them is more than the threshold.
+
+    Returns:
+        (2 n, voxels (8 W, 3), values (8 W, 4)), where eight voxels have the values of one.
+    """
+    kept = prune_and_dilate(n, voxels, *shares(values, march(n, voxels, rays)), threshold, 0)
+    old = find_rows(row_table(n, voxels), kept)
+    octants = np.array(list(np.ndindex(2, 2, 2)))
+    return 2 * n, (2 * kept[:, None] + octants).reshape(-1, 3), np.repeat(values[old], 8, axis=0)
+
+
+def active_stats(n, tree, values):
+    """Bytes of a volume: (dense, octree, rows of voxels, values), 8 for each number."""
+    return 8 * 4 * n**3, 8 * tree.size, 8 * (n + 2) ** 3, 8 * values.size

@@ -1,9 +1,41 @@
 """What the figures of assignment 11 draw: scenes, measurements, pieces of pictures."""
 
+from contextlib import contextmanager
+
 import numpy as np
 from matplotlib.patches import Circle
-from photograd_course.captures import all_around, rays_to_origin
+from photograd_course.assignment.load import load_module
+from photograd_course.build.kits import source_folders
 from photograd_course.viz.style import FRAME, signed_color_map
+
+
+def _teapot():
+    """`data/teapot.py`."""
+    file = source_folders()["11_spherical_harmonics"] / "data" / "teapot.py"
+    return load_module("teapot", file.read_text("utf-8"))
+
+
+TEAPOT = _teapot()
+
+
+@contextmanager
+def rate(module, value, samples=24):
+    """Another learning rate, as the teapot is opaque, and more samples on a ray."""
+    before = module.RATE, module.SAMPLES
+    module.RATE, module.SAMPLES = value, samples
+    yield
+    module.RATE, module.SAMPLES = before
+
+
+def recovered_teapot(module, k):
+    """(density, coefficients) with k coefficients, on 16^3 cells, from photographs."""
+    rays, target = TEAPOT.photographs(30, 16)
+    start = np.full((4, 4, 4), 0.1), np.zeros((4, 4, 4, k, 3))
+    start[1][..., 0, :] = 1.8  # gray: black fog before black would change no pixel
+    with rate(module, 0.2):
+        found = module.fit_plenoxels(*start, rays, target, 3, 12)[:2]
+    with rate(module, 0.05):
+        return module.fit_plenoxels(*found, rays, target, 1, 16)[:2]
 
 
 def seen(module, volume, rays):
@@ -53,34 +85,14 @@ def sky(d, sharp=25.0, pale=0.3):
     return pale * (0.35 + 0.3 * d[:, 2:] ** 3) + 4 * np.exp(sharp * (d @ LIGHT[:, None] - 1))
 
 
-def ball_scene(module, n, light, second=False):
-    """A glossy ball, perhaps with a second one: density (n, n, n) and coefficients."""
+def ball_scene(module, n, light):
+    """A glossy ball: density (n, n, n) and coefficients."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
-    radii = [0.6] if not second else [0.45, 0.3]
-    away = [np.linalg.norm(x - center, axis=-1) for center in centers]
-    inside = [np.clip((r - a) * n / 3 + 0.5, 0, 1) for r, a in zip(radii, away, strict=True)]
-    which = np.argmax(inside, axis=0)
-    normal = x - np.array(centers)[which]
-    normal = normal / (np.linalg.norm(normal, axis=-1, keepdims=True) + 1e-12)
+    away = np.linalg.norm(x, axis=-1)
+    normal = x / (away[..., None] + 1e-12)
     facing = normal @ light
     mirrored = 2 * facing[..., None] * normal - light
     c = module.sh_basis(mirrored.reshape(-1, 3), 2) * np.repeat([0.9, 0.8, 0.6], [1, 3, 5])
     c = c.reshape(n, n, n, 9, 1)
-    c[..., 0, 0] += np.array([2.5, 1.4])[which] * (0.3 + 0.5 * np.maximum(facing, 0))
-    return 8 * np.max(inside, axis=0), c
-
-
-def photographs(views, pixels, twist=0.0):
-    """Rays of cameras spread evenly all around, that look at the middle."""
-    positions = 3.2 * all_around(views, 2 * np.pi * twist)
-    return rays_to_origin(positions, pixels, np.tan(0.375))
-
-
-def dilated(mask):
-    """A mask and all cells next to it."""
-    grown = mask.copy()
-    for axis in range(3):
-        for step in (1, -1):
-            grown |= np.roll(mask, step, axis)
-    return grown
+    c[..., 0, 0] += 2.5 * (0.3 + 0.5 * np.maximum(facing, 0))
+    return 8 * np.clip((0.6 - away) * n / 3 + 0.5, 0, 1), c

@@ -29,7 +29,6 @@ DATA = {"mutants.toml", "systems.toml"}
 LONGER = {
     "assignments/06_real_time_frame/real_time_frame.py": 630,
     "assignments/07_path_tracing/path_tracing.py": 600,
-    "assignments/10_sparse_grids/sparse_grids.py": 430,
     "assignments/14_edges_and_light/edges_and_light.py": 650,
     "assignments/15_gaussian_splatting/splatting.py": 410,
 }

@@ -1,16 +1,7 @@
-"""Whole arrays only: tree from the cells upwards, slots claimed in rounds, growth axis by axis."""
+"""Whole arrays only: tree from the cells upwards, growth axis by axis."""
 
 import numpy as np
-from sparse_grids import (
-    START,
-    Adam,
-    hash_slot,
-    loss_and_grad,
-    march,
-    new_table,
-    shares,
-    voxel_hash_find,
-)
+from sparse_grids import START, Adam, find_rows, loss_and_grad, march, row_table, shares
 
 EMPTY, FULL = (0, -1)
 
@@ -56,33 +47,6 @@ def skip_empty(leaf, first, stride, count):
     return wanted
 
 
-def voxel_hash_insert(table, voxels, rows):
-    # All search at once; of several voxels at one free slot, the first in the list gets it.
-    table = np.array(table)
-    _, last = np.unique(voxels[::-1], axis=0, return_index=True)
-    keep = np.sort(len(voxels) - 1 - last)
-    voxels, rows = voxels[keep], rows[keep]
-    slot = hash_slot(voxels, len(table))
-    waiting = np.arange(len(voxels))
-    for _ in range(len(table)):
-        if len(waiting) == 0:
-            return table
-        at = slot[waiting]
-        same = (table[at, 3] >= 0) & (table[at, :3] == voxels[waiting]).all(axis=1)
-        table[at[same], 3] = rows[waiting[same]]
-        free = np.flatnonzero(table[at, 3] < 0)
-        _, first = np.unique(at[free], return_index=True)
-        lucky = free[first]
-        table[at[lucky], :3] = voxels[waiting[lucky]]
-        table[at[lucky], 3] = rows[waiting[lucky]]
-        same[lucky] = True
-        waiting = waiting[~same]
-        slot[waiting] = (slot[waiting] + 1) % len(table)
-    if len(waiting):
-        raise ValueError("the table is full")
-    return table
-
-
 def sample_sparse_adjoint(count, row, weight, g):
     # Missing voxels hand theirs to a row more, which is then left out.
     where = np.where(row < 0, count, row).ravel()
@@ -105,13 +69,10 @@ def prune_and_dilate(n, voxels, row, share, threshold, steps):
 
 
 def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
-    def table_of(voxels):
-        return voxel_hash_insert(new_table(len(voxels)), voxels, np.arange(len(voxels)))
-
     losses = np.zeros((rounds, steps))
-    table = table_of(voxels)
+    table = row_table(n, voxels)
     for r in range(rounds):
-        samples = march(n, voxels, table, rays)
+        samples = march(n, voxels, rays)
         optimizer = Adam()
         for s in range(steps):
             losses[r, s], d_values = loss_and_grad(values, samples, target)
@@ -119,8 +80,8 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
             values = np.concatenate([values[:, :3], np.clip(values[:, 3:], 0, None)], axis=1)
         if r + 1 < rounds:
             after = prune_and_dilate(n, voxels, *shares(values, samples), threshold, grow)
-            rows = voxel_hash_find(table, after)
+            rows = find_rows(table, after)
             fresh = np.tile(START, (len(after), 1))
             fresh[rows >= 0] = values[rows[rows >= 0]]
-            voxels, values, table = after, fresh, table_of(after)
+            voxels, values, table = after, fresh, row_table(n, after)
     return voxels, values, losses.ravel()

@@ -1,16 +1,7 @@
 """From the handout alone: recursion over halves, a parameter of the ray, sets of neighbors."""
 
 import numpy as np
-from sparse_grids import (
-    START,
-    Adam,
-    hash_slot,
-    loss_and_grad,
-    march,
-    new_table,
-    shares,
-    voxel_hash_find,
-)
+from sparse_grids import START, Adam, find_rows, loss_and_grad, march, row_table, shares
 
 EMPTY, FULL = (0, -1)
 
@@ -65,22 +56,6 @@ def skip_empty(leaf, first, stride, count):
     return result
 
 
-def voxel_hash_insert(table, voxels, rows):
-    result = table.copy()
-    n = len(result)
-    for j in range(len(voxels)):
-        h = hash_slot(voxels[j : j + 1], n)[0]
-        for s in range(n):
-            x, y, z, row = result[(h + s) % n]
-            if row == -1 or (x, y, z) == tuple(voxels[j]):
-                result[(h + s) % n, :3] = voxels[j]
-                result[(h + s) % n, 3] = rows[j]
-                break
-            if s == n - 1:
-                raise ValueError("no room")
-    return result
-
-
 def sample_sparse_adjoint(count, row, weight, g):
     padded = np.zeros((count + 1, g.shape[1]))
     for e in range(len(row)):
@@ -113,9 +88,7 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
     losses = []
     voxels, values = voxels.copy(), values.copy()
     for r in range(rounds):
-        V = len(voxels)
-        table = voxel_hash_insert(new_table(V), voxels, np.arange(V))
-        samples = march(n, voxels, table, rays)
+        samples = march(n, voxels, rays)
         adam = Adam()
         for _ in range(steps):
             loss, d_values = loss_and_grad(values, samples, target)
@@ -126,7 +99,7 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
             row, share = shares(values, samples)
             new = prune_and_dilate(n, voxels, row, share, threshold, grow)
             start = np.zeros((len(new), 4))
-            for i, old in enumerate(voxel_hash_find(table, new)):
+            for i, old in enumerate(find_rows(row_table(n, voxels), new)):
                 start[i] = values[old] if old != -1 else START
             voxels, values = new, start
     return voxels, values, np.array(losses)

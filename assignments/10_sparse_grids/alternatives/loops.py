@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from sparse_grids import START, Adam, hash_slot, loss_and_grad, march, new_table, shares
+from sparse_grids import START, Adam, loss_and_grad, march, shares
 
 EMPTY, FULL = (0, -1)
 
@@ -53,20 +53,6 @@ def skip_empty(leaf, first, stride, count):
     return out
 
 
-def voxel_hash_insert(table, voxels, rows):
-    entries = table.tolist()
-    for (x, y, z), row, start in zip(
-        voxels.tolist(), rows.tolist(), hash_slot(voxels, len(table)).tolist(), strict=True
-    ):
-        at, looked = start, 0
-        while entries[at][3] != -1 and entries[at][:3] != [x, y, z]:
-            at, looked = (at + 1) % len(entries), looked + 1
-            if looked == len(entries):
-                raise ValueError("full")
-        entries[at] = [x, y, z, row]
-    return np.array(entries, dtype=np.int64)
-
-
 def sample_sparse_adjoint(count, row, weight, g):
     out = [[0.0] * g.shape[1] for _ in range(count)]
     given = g.tolist()
@@ -97,8 +83,7 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
     losses = []
     left = rounds
     while True:
-        table = voxel_hash_insert(new_table(len(voxels)), voxels, np.arange(len(voxels)))
-        samples = march(n, voxels, table, rays)
+        samples = march(n, voxels, rays)
         adam = Adam()
         for _ in range(steps):
             loss, d = loss_and_grad(values, samples, target)

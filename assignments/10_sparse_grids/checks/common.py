@@ -26,14 +26,6 @@ def same_counts(t, what, got, right, hint=""):
         raise
 
 
-def recognized(failure, more, hint):
-    """The verdict on a submission that raised an exception whose cause is known."""
-    details = {"advice": hint, "exception": failure.private}  # which public checks may show
-    if failure.line is not None:
-        details["line"] = list(failure.line)
-    return CheckFailed(f"{failure.text}{more}", details)
-
-
 def blocks(t, n, cut=0.75):
     """A random cube (n, n, n) of bool with uniform parts of all sizes."""
     if n == 1 or t.rng.random() > cut:
@@ -75,7 +67,7 @@ def marked(voxels, n):
 
 def same_voxels(t, what, n, got, right, hint=""):
     inside = bool(((got >= 0) & (got < n)).all())
-    cut = "handout, equation (13): growth is cut off at the faces of the cube"
+    cut = "handout, equation (12): growth is cut off at the faces of the cube"
     t.require(inside, f"{what}: a voxel lies outside of the cube", hint=cut)
     same_counts(
         t,
@@ -92,7 +84,7 @@ def same_voxels(t, what, n, got, right, hint=""):
 
 
 # What `march` is made of.
-EARLIER = ("octree_from_dense", "skip_empty", "voxel_hash_insert", "prune_and_dilate")
+EARLIER = ("octree_from_dense", "skip_empty", "prune_and_dilate")
 
 
 def looking(t, views, size):

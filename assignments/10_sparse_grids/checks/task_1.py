@@ -43,8 +43,8 @@ def cells_of(t, tree, n):
 
 @check(
     "10.1.cells",
-    points=4,
-    hint="child 4 a + 2 b + c lies in the upper half along x where a is 1",
+    points=5,
+    hint="child 4 X + 2 Y + Z lies in the upper half along x where X is 1",
     sole="which cell is full comes before how few nodes say so",
 )
 def the_tree_says_what_the_cube_says(t):

@@ -22,7 +22,7 @@ def counting_leaf(full, asked, most=np.inf):
         if sum(asked) > most:
             raise CheckFailed(
                 "skip_empty: asks without end; a ray stands still",
-                {"advice": "a ray stands still: on a face m is 0, see the 1 in equation (8)"},
+                {"advice": "a ray stands still: on a face u is 0, see the 1 in equation (8)"},
             )
         cell = np.clip(np.floor(points), 0, n - 1).astype(np.int64)
         size = side[tuple(cell.T)]
@@ -68,7 +68,7 @@ def same_samples(t, got, right):
 
 @check(
     "10.2.samples",
-    points=4,
+    points=5,
     hint="the first face ahead is the nearest of three; samples before it share the leaf",
     sole="the picture depends on nothing else",
 )
@@ -104,7 +104,7 @@ def samples_on_faces(t):
 
 @check(
     "10.2.cost",
-    points=4,
+    points=5,
     hint="one lookup for each leaf that a ray passes; then over all samples in it at once",
     sole="what skipping is for: lookups are counted, not seconds",
 )
@@ -115,9 +115,9 @@ def a_leaf_is_asked_for_once(t):
     full[3:9, 4:12, 5:11] = full[12:14, 1:4, 8:15] = True
     ways = (
         ("", 1, 0),
-        ("going down, the face ahead is q_a, not q_a + h", -1, 0),
-        ("where s_a = 0 there is no face ahead: ignore that axis", 1, 1),
-        ("where s_a = 0 there is no face ahead: ignore that axis", 1, 2),
+        ("going down, the face ahead is the lower one, at low", -1, 0),
+        ("where a stride is 0 there is no face ahead: ignore that axis", 1, 1),
+        ("where a stride is 0 there is no face ahead: ignore that axis", 1, 2),
     )
     for hint, way, still in ways:
         first, stride = rays_within(t, n, 12, count)

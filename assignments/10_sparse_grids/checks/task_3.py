@@ -1,165 +1,110 @@
 """Task 10.3, public checks."""
 
 import numpy as np
-from photograd_course.grading import Array, agree, checks_for
-from photograd_course.grading.failures import StudentFailure
+from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
+from photograd_course.grading.adjoint_gate import (
+    agrees_with_finite_differences,
+    is_the_transpose,
+    require_zero_for_zero,
+)
 
-from .common import recognized, same_counts
+# Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
+# all named wrong solutions.
+EXACT = Tolerance(1e-11, "right ones differ by 1e-15, wrong ones by 1e-2 or more")
 
-check = checks_for(calls=("voxel_hash_insert",))
-
-
-def some_voxels(t, count, reach=6):
-    """Different voxels (count, 3), below zero as well."""
-    voxels = np.unique(t.rng.integers(-reach, reach, (3 * count, 3)), axis=0)
-    return t.rng.permutation(voxels)[:count]
-
-
-def crowd(t, count, slots, slot):
-    """Different voxels (count, 3) that all begin at one slot, no two with an index in common."""
-    found = []
-    while len(found) < count:
-        some = t.rng.integers(-200, 200, (40 * slots, 3))
-        for voxel in some[first_slot(some, slots) == slot]:
-            if len(found) < count and all((voxel != each).all() for each in found):
-                found.append(voxel)
-    return np.array(found)
+check = checks_for(calls=("sample_sparse_adjoint",), tolerance=EXACT)
+GATE = Tolerance(1e-6, "finite differences leave 1e-9, wrong ones are off by 1e-2 or more")
 
 
-def free_table(slots):
-    table = np.zeros((slots, 4), np.int64)
-    table[:, 3] = -1
-    return table
+def some_samples(t, count, samples, missing=0.3):
+    """(row, weight), both (8, samples), with voxels that are missing; the last row is read too."""
+    row = t.rng.integers(0, count, (8, samples))
+    row[t.rng.random(row.shape) < missing] = -1
+    row[0, 0], row[1, 0] = count - 1, -1
+    weight = t.rng.uniform(0.0, 1.0, (8, samples))
+    return row, weight / weight.sum(axis=0)
 
 
-def first_slot(voxels, slots):
-    x, y, z = voxels.T
-    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) % slots
+def back(t, count, row, weight, g):
+    return t.call(
+        "sample_sparse_adjoint", count, row, weight, g, returns=Array((count, *g.shape[1:]))
+    )
 
 
-# What NumPy and Python say of mistakes that have nothing to do with the room in a table.
-ELSEWHERE = ("ambiguous", "broadcast", "shape", "convert", "unpack", "invalid", "sequence", "zip()")
-AROUND = "after the last slot comes slot 0: (9) is mod S"
-THERE = "the voxel is there already: overwrite its slot, take no second one"
-
-
-def insert(t, table, voxels, rows):
-    """The table with these voxels, for whom there is room."""
-    try:
-        return t.call("voxel_hash_insert", table, voxels, rows, returns=Array(table.shape, "i8"))
-    except StudentFailure as failure:
-        kind = failure.private.partition(":")[0]
-        told = {"IndexError": "out of" in failure.private, "ValueError": True}.get(kind, False)
-        told = told and not any(word in failure.private for word in ELSEWHERE)
-        if failure.reason != "raised" or not told or t.check.visibility != "public":
-            raise
-        # With a slot for each, even for those that come twice, only the way around is left.
-        twice = kind == "ValueError" and (table[:, 3] >= 0).sum() + len(voxels) > len(table)
-        raise recognized(failure, ", though there is room", THERE if twice else AROUND) from None
-
-
-def require_sound(t, table, voxels, rows):
-    """Each voxel stands in the table once, with its row, and a search gets to it."""
-    taken = np.flatnonzero(table[:, 3] >= 0)
+@check(
+    "10.3.transpose",
+    points=4,
+    hint="handout, equation (10): the same weights as in the forward pass, from sample to voxel",
+    sole="the definition of an adjoint",
+)
+def the_adjoint_is_the_transpose(t):
+    """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice are summed."""
+    # The weights of a sample sum to 1: a voxel that is all eight corners gets the whole g.
+    g = np.repeat(t.rng.uniform(0.5, 0.9, (5, 1)), 2, axis=1)
+    weight = t.rng.uniform(0.1, 1.0, (8, 5))
+    weight /= weight.sum(axis=0)
+    got, whole = back(t, 3, np.ones((8, 5), np.int64), weight, g)[1, 0], g[:, 0].sum()
     t.require(
-        len(taken) == len(voxels),
-        f"{len(taken)} slots are taken by {len(voxels)} voxels",
-        hint=THERE if len(taken) > len(voxels) else "",
+        got > 0.999 * whole,
+        f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
+        f"the samples have {whole:.6g}",
+        hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
+        "not accumulate; use `np.add.at`",
     )
-    where = {
-        tuple(entry[:3]): int(slot)
-        for slot, entry in zip(taken, table[taken].tolist(), strict=True)
-    }
-    starts = first_slot(voxels, len(table)).tolist()
-    for voxel, row, start in zip(voxels.tolist(), rows.tolist(), starts, strict=True):
-        slot = where.get(tuple(voxel))
-        t.require(slot is not None, f"voxel {voxel} is not in the table")
-        own = int(table[slot, 3])
-        t.require(own == row, f"voxel {voxel} has the row {own}, not {row}")
-        between = (start + np.arange((slot - start) % len(table))) % len(table)
-        t.require(
-            bool((table[between, 3] >= 0).all()),
-            f"a free slot lies between the first slot of {voxel} and where it is: "
-            "a search ends there",
-        )
+    for count, samples, channels in ((6, 9, 4), (40, 15, 1), (1, 3, 2)):
+        row, weight = some_samples(t, count, samples)
+        x, g = t.rng.uniform(-1, 1, (count, channels)), t.rng.uniform(-1, 1, (samples, channels))
+        d_values = back(t, count, row, weight, g)
+        forth = t.call("sample_sparse", x, row, weight, returns=Array((samples, channels)))
+        is_the_transpose(t, "<x, S* g>", x, forth, g, d_values)
+    require_zero_for_zero(t, {"values": back(t, count, row, weight, 0 * g)})
 
 
 @check(
-    "10.3.found",
-    points=3,
-    hint="handout, equation (9): the first free slot from the voxel's own onward",
-    sole="asks what a table is for: voxel in, row out",
+    "10.3.missing",
+    points=4,
+    hint="row -1 means that there is no voxel; as an index it means the last one",
+    sole="what a voxel that does not exist gets, and who must not get it instead",
 )
-def what_was_put_in_is_found(t):
-    """Voxels are found with their rows, in tables almost empty and almost full; others are not."""
-    cases = [(some_voxels(t, count), slots) for count, slots in ((1, 3), (30, 61), (30, 31))]
-    cases += [(crowd(t, count, 7, 5), 7) for count in (6, 7)]
-    for voxels, slots in cases:
-        count = len(voxels)
-        rows = t.rng.permutation(5 * count)[:count] + 1
-        rows[0] = 0  # a row as good as any
-        table = insert(t, free_table(slots), voxels, rows)
-        others = some_voxels(t, 20) + 300
-        found = t.call(
-            "voxel_hash_find",
-            table,
-            np.concatenate([voxels, others]),
-            returns=Array((count + 20,), "i8"),
-        )
-        same_counts(t, "rows that are found", found, np.append(rows, np.full(20, -1)))
-        require_sound(t, table, voxels, rows)
+def a_missing_voxel_gets_nothing(t):
+    """What belongs to absent voxels goes nowhere: other voxels get what they got before."""
+    count, samples = 5, 8
+    row, weight = some_samples(t, count, samples, 0.0)
+    row[1, 0] = 0
+    g = t.rng.uniform(0.5, 1.5, (samples, 2))
+    whole = back(t, count, row, weight, g)
+    less = back(t, count, np.where(row == 2, -1, row), weight, g)
+    t.require(not less[2].any(), "a voxel that no sample reads must get 0")
+    keep = np.array([0, 1, 3, 4])
+    t.close("d_values without voxel 2", less[keep], back(t, count, row, weight, g)[keep])
+    none = back(t, count, np.full((8, samples), -1), weight, g)
+    t.require(not none.any(), "no sample reads a voxel: all derivatives must be 0")
+    t.require(bool(whole.any()), "d_values is zero although samples read voxels")
+    empty = back(t, 0, np.full((8, 2), -1), weight[:, :2], g[:2])
+    t.require(empty.shape == (0, 2), "without any voxel there is no derivative")
 
 
 @check(
-    "10.3.again",
-    points=3,
-    hint="a slot that holds the very same voxel is as good as a free one",
-    sole="a voxel that comes again is not a new one",
+    "10.3.picture",
+    points=4,
+    tolerance=GATE,
+    hint="loss_and_grad is right once your function is the transpose of sample_sparse",
+    sole="the derivative of a picture, by finite differences",
 )
-def a_voxel_that_comes_again_gets_its_new_row(t):
-    """Put in twice, a voxel takes one slot and has the later row; the others keep theirs."""
-    voxels, rows = crowd(t, 8, 11, 9), np.arange(8)
-    table = insert(t, free_table(11), voxels[:6], rows[:6])
-    again = np.concatenate([voxels[3:], voxels[4:6]])
-    table = insert(t, table, again, np.concatenate([rows[3:] + 100, [7, 8]]))
-    expected = np.concatenate([rows[:3], rows[3:] + 100])
-    expected[4:6] = 7, 8
-    require_sound(t, table, voxels, expected)
-    pair = crowd(t, 2, 2, 0)
-    full = insert(t, free_table(2), pair, np.array([3, 4]))
-    require_sound(t, insert(t, full, pair[::-1], np.array([6, 5])), pair, np.array([5, 6]))
+def the_picture_agrees_with_differences(t):
+    """Moving one value of one voxel moves the loss as the derivative through your function says."""
+    wanted = t.rng.random((6, 7)) < 0.6
+    wanted[0] = True
+    row, weight = some_samples(t, 9, int(wanted.sum()))
+    samples = (wanted, t.rng.uniform(0.1, 0.3, 6), row, weight)
+    values, target = t.rng.uniform(0.3, 1.0, (9, 4)), t.rng.uniform(0.0, 1.0, (6, 3))
+    answer = Items(Number(), Array((9, 4)), names=("loss", "d_values"))
+    got = t.call("loss_and_grad", values, samples, target, returns=answer)
 
+    def forward(p):
+        both = np.concatenate([p["color"], p["sigma"][:, None]], axis=1)
+        return t.call("loss_and_grad", both, samples, target, returns=answer)[0]
 
-@check(
-    "10.3.room",
-    points=2,
-    hint="count the slots that were looked at: after all of them, raise ValueError",
-)
-def a_full_table_says_so(t):
-    """A new voxel for a table without a free slot is refused with ValueError."""
-    for slots in (1, 5):
-        voxels = crowd(t, slots + 1, slots, slots - 1)
-        table = insert(t, free_table(slots), voxels[:slots], np.arange(slots))
-        require_sound(t, table, voxels[:slots], np.arange(slots))
-        t.refuses("voxel_hash_insert", table, voxels[slots:], np.array([9]), error="ValueError")
-
-
-@check(
-    "10.3.kept",
-    points=1,
-    hint="copy the table first",
-    sole="what students can run; hidden checks find its mistakes as well",
-)
-def the_old_table_stays(t):
-    """Voxels inserted in a table are not in the table that was given."""
-    voxels, rows = some_voxels(t, 10), np.arange(5)
-    got = t.call(
-        "adapters.insert_after",
-        free_table(11),
-        voxels[:5],
-        voxels[5:],
-        rows,
-        returns=Array((11, 4), "i8"),
-    )
-    same = agree(got, insert(t, free_table(11), voxels[5:], rows))
-    t.require(same, "voxel_hash_insert has written into the table that it was given")
+    point = {"color": values[:, :3], "sigma": values[:, 3]}
+    slopes = {"color": got[1][:, :3], "sigma": got[1][:, 3]}
+    agrees_with_finite_differences(t, slopes, forward, point, np.asarray(1.0), GATE)

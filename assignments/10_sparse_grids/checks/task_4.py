@@ -1,110 +1,128 @@
 """Task 10.4, public checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, checks_for
-from photograd_course.grading.adjoint_gate import (
-    agrees_with_finite_differences,
-    is_the_transpose,
-    require_zero_for_zero,
-)
+from photograd_course.grading import Array, Items, Tolerance, checks_for
 
-# Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
-# all named wrong solutions.
-EXACT = Tolerance(1e-11, "right ones differ by 1e-15, wrong ones by 1e-2 or more")
+from .common import EARLIER, looking, lump, same_voxels
 
-check = checks_for(calls=("sample_sparse_adjoint",), tolerance=EXACT)
-GATE = Tolerance(1e-6, "finite differences leave 1e-9, wrong ones are off by 1e-2 or more")
+check = checks_for(calls=("prune_and_dilate",))
+
+SAME = Tolerance(1e-10, "skipped and unskipped pictures differ by 1e-15, wrong ones by 1e-3")
 
 
-def some_samples(t, count, samples, missing=0.3):
-    """(row, weight), both (8, samples), with voxels that are missing; the last row is read too."""
-    row = t.rng.integers(0, count, (8, samples))
-    row[t.rng.random(row.shape) < missing] = -1
-    row[0, 0], row[1, 0] = count - 1, -1
-    weight = t.rng.uniform(0.0, 1.0, (8, samples))
-    return row, weight / weight.sum(axis=0)
+def voxels_in(t, n, count):
+    """Different voxels of the cube, in no order."""
+    voxels = np.stack(np.unravel_index(t.rng.permutation(n**3)[:count], (n, n, n)), axis=1)
+    return voxels.astype(np.int64)
 
 
-def back(t, count, row, weight, g):
+def pruned(t, n, voxels, row, share, threshold, steps):
     return t.call(
-        "sample_sparse_adjoint", count, row, weight, g, returns=Array((count, *g.shape[1:]))
+        "prune_and_dilate", n, voxels, row, share, threshold, steps, returns=Array((None, 3), "i8")
     )
 
 
+def grown(t, n, voxels, steps):
+    """Nothing is pruned, all grow."""
+    alone = np.arange(len(voxels))[None]
+    return pruned(t, n, voxels, alone, np.ones(alone.shape), 0.5, steps)
+
+
+def some_shares(t, most):
+    """(row, share), (8, M) each: voxel v has the largest share most[v]; 0 means never sampled."""
+    read = np.flatnonzero(most > 0)
+    more = t.rng.choice(read, 7 * len(read) + 40)
+    missing = 40 - (8 * len(read) + 80) % 8
+    row = np.concatenate([read, more, np.full(missing, -1)])
+    less = most[more] * t.rng.uniform(0, 0.6, len(more))
+    share = np.concatenate([most[read], less, t.rng.uniform(1, 5, missing)])
+    order = t.rng.permutation(len(row))
+    return row[order].reshape(8, -1), share[order].reshape(8, -1)
+
+
 @check(
-    "10.4.transpose",
-    points=3,
-    hint="handout, equation (11): the same weights as in the forward pass, from sample to voxel",
-    sole="the definition of an adjoint",
+    "10.4.pruned",
+    points=4,
+    hint="the largest share of any sample decides: one view that needs a voxel is enough",
+    sole="who stays, asked without growing",
 )
-def the_adjoint_is_the_transpose(t):
-    """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice are summed."""
-    # The weights of a sample sum to 1: a voxel that is all eight corners gets the whole g.
-    g = np.repeat(t.rng.uniform(0.5, 0.9, (5, 1)), 2, axis=1)
-    weight = t.rng.uniform(0.1, 1.0, (8, 5))
-    weight /= weight.sum(axis=0)
-    got, whole = back(t, 3, np.ones((8, 5), np.int64), weight, g)[1, 0], g[:, 0].sum()
-    t.require(
-        got > 0.999 * whole,
-        f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
-        f"the samples have {whole:.6g}",
-        hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
-        "not accumulate; use `np.add.at`",
+def the_largest_share_decides(t):
+    """Voxels stay whose largest share is above the threshold; those never sampled do not."""
+    n, count = 8, 60
+    voxels = voxels_in(t, n, count)
+    most = t.rng.uniform(0.1, 0.9, count)
+    most[::7] = most[-1] = 0.0
+    row, share = some_shares(t, most)
+    for threshold in (0.5, 0.0):
+        got = pruned(t, n, voxels, row, share, threshold, 0)
+        same_voxels(t, f"threshold {threshold}", n, got, voxels[most > threshold])
+    half = np.where(t.rng.random(count) < 0.5, 0.5, 0.25)
+    row, share = np.arange(count)[None], half[None]
+    got = pruned(t, n, voxels, row, share, 0.25, 0)
+    same_voxels(t, "a share equal to the threshold", n, got, voxels[half > 0.25])
+
+
+@check(
+    "10.4.grown",
+    points=4,
+    hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
+    sole="closed forms: one voxel, a corner, two steps at once",
+)
+def one_voxel_grows_into_a_cube(t):
+    """One voxel becomes a cube of side 2 s + 1, clipped at the border; two steps are twice one."""
+    n = 8
+    for steps in (1, 2):
+        middle = t.rng.integers(steps, n - steps, 3)
+        got = grown(t, n, middle[None], steps)
+        around = np.stack(
+            np.meshgrid(*[np.arange(m - steps, m + steps + 1) for m in middle], indexing="ij"),
+            axis=-1,
+        ).reshape(-1, 3)
+        same_voxels(t, f"one voxel and {steps} steps", n, got, around)
+        corner = np.array([[0, n - 1, 0]])
+        got = grown(t, n, corner, steps)
+        right = (steps + 1) ** 3
+        t.require(len(got) == right, f"a corner grows into {len(got)} voxels, expected {right}")
+        near = bool((np.abs(got - corner) <= steps).all())
+        t.require(near, "a corner grows out of its corner")
+    voxels = voxels_in(t, n, 6)
+    parts = np.concatenate([grown(t, n, voxels[k : k + 1], 1) for k in range(6)])
+    once = grown(t, n, voxels, 1)
+    same_voxels(t, "six voxels grow as each alone", n, once, np.unique(parts, axis=0))
+    same_voxels(t, "two steps at once", n, grown(t, n, voxels, 2), grown(t, n, once, 1))
+
+
+def photographed(t, n, voxels, values, rays):
+    """(colors, wanted, step) by `march` and `render`."""
+    count = rays.shape[1]
+    parts = Items(
+        Array((count, 3)),
+        Array((count, 2 * n), "bool"),
+        Array((count,)),
+        names=("colors", "wanted", "step"),
     )
-    for count, samples, channels in ((6, 9, 4), (40, 15, 1), (1, 3, 2)):
-        row, weight = some_samples(t, count, samples)
-        x, g = t.rng.uniform(-1, 1, (count, channels)), t.rng.uniform(-1, 1, (samples, channels))
-        d_values = back(t, count, row, weight, g)
-        forth = t.call("sample_sparse", x, row, weight, returns=Array((samples, channels)))
-        is_the_transpose(t, "<x, S* g>", x, forth, g, d_values)
-    require_zero_for_zero(t, {"values": back(t, count, row, weight, 0 * g)})
+    return t.call("adapters.picture", n, voxels, values, rays, returns=parts)
 
 
 @check(
-    "10.4.missing",
-    points=3,
-    hint="row -1 means that there is no voxel; as an index it means the last one",
-    sole="what a voxel that does not exist gets, and who must not get it instead",
+    "10.4.render",
+    points=2,
+    needs=EARLIER[:2],
+    tolerance=SAME,
+    hint="a sample in an empty cell reads the full cell next to it: dilated by one, not less",
+    sole="skipping may save work, never change a picture",
 )
-def a_missing_voxel_gets_nothing(t):
-    """What belongs to absent voxels goes nowhere: other voxels get what they got before."""
-    count, samples = 5, 8
-    row, weight = some_samples(t, count, samples, 0.0)
-    row[1, 0] = 0
-    g = t.rng.uniform(0.5, 1.5, (samples, 2))
-    whole = back(t, count, row, weight, g)
-    less = back(t, count, np.where(row == 2, -1, row), weight, g)
-    t.require(not less[2].any(), "a voxel that no sample reads must get 0")
-    keep = np.array([0, 1, 3, 4])
-    t.close("d_values without voxel 2", less[keep], back(t, count, row, weight, g)[keep])
-    none = back(t, count, np.full((8, samples), -1), weight, g)
-    t.require(not none.any(), "no sample reads a voxel: all derivatives must be 0")
-    t.require(bool(whole.any()), "d_values is zero although samples read voxels")
-    empty = back(t, 0, np.full((8, 2), -1), weight[:, :2], g[:2])
-    t.require(empty.shape == (0, 2), "without any voxel there is no derivative")
-
-
-@check(
-    "10.4.picture",
-    points=3,
-    tolerance=GATE,
-    hint="loss_and_grad is right once your function is the transpose of sample_sparse",
-    sole="the derivative of a picture, by finite differences",
-)
-def the_picture_agrees_with_differences(t):
-    """Moving one value of one voxel moves the loss as the derivative through your function says."""
-    wanted = t.rng.random((6, 7)) < 0.6
-    wanted[0] = True
-    row, weight = some_samples(t, 9, int(wanted.sum()))
-    samples = (wanted, t.rng.uniform(0.1, 0.3, 6), row, weight)
-    values, target = t.rng.uniform(0.3, 1.0, (9, 4)), t.rng.uniform(0.0, 1.0, (6, 3))
-    answer = Items(Number(), Array((9, 4)), names=("loss", "d_values"))
-    got = t.call("loss_and_grad", values, samples, target, returns=answer)
-
-    def forward(p):
-        both = np.concatenate([p["color"], p["sigma"][:, None]], axis=1)
-        return t.call("loss_and_grad", both, samples, target, returns=answer)[0]
-
-    point = {"color": values[:, :3], "sigma": values[:, 3]}
-    slopes = {"color": got[1][:, :3], "sigma": got[1][:, 3]}
-    agrees_with_finite_differences(t, slopes, forward, point, np.asarray(1.0), GATE)
+def skipping_changes_nothing(t):
+    """The picture of a sparse grid is that of all n^3 voxels, most of its samples skipped."""
+    n = 8
+    voxels, values = lump(t, n)
+    rays = looking(t, 3, 6)
+    some, wanted, step = photographed(t, n, voxels, values, rays)
+    every = np.argwhere(np.ones((n, n, n), bool))
+    dense = np.zeros((n**3, 4))
+    dense[voxels @ np.array([n * n, n, 1])] = values
+    whole, most, _ = photographed(t, n, every, dense, rays)
+    t.require(bool(whole.any()), "the picture is black")
+    t.close("colors", some, whole)
+    t.require(bool(most[step > 0].all()), "with every voxel active no sample may be skipped")
+    t.require(wanted.sum() < 0.8 * most.sum(), "hardly a sample was skipped")

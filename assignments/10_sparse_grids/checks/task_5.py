@@ -1,128 +1,175 @@
 """Task 10.5, public checks."""
 
+from dataclasses import dataclass
+
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, checks_for
+from photograd_course.grading import Array, Items, Number, Tolerance, agree, checks_for
+from photograd_course.grading.failures import CheckFailed, StudentFailure
 
-from .common import EARLIER, looking, lump, same_voxels
+from .common import EARLIER, FAITHFUL, looking, lump, same_voxels
 
-check = checks_for(calls=("prune_and_dilate",))
+CHAINED = Tolerance(1e-7, "right ones differ by 1e-12, wrong ones by 1e-3 or more")
+STEPS = (*EARLIER, "sample_sparse_adjoint")
 
-SAME = Tolerance(1e-10, "skipped and unskipped pictures differ by 1e-15, wrong ones by 1e-3")
-
-
-def voxels_in(t, n, count):
-    """Different voxels of the cube, in no order."""
-    voxels = np.stack(np.unravel_index(t.rng.permutation(n**3)[:count], (n, n, n)), axis=1)
-    return voxels.astype(np.int64)
+check = checks_for(calls=("fit_sparse",), needs=STEPS)
 
 
-def pruned(t, n, voxels, row, share, threshold, steps):
-    return t.call(
-        "prune_and_dilate", n, voxels, row, share, threshold, steps, returns=Array((None, 3), "i8")
+@dataclass(frozen=True)
+class Fit:
+    """Result of `fit_sparse` after so many steps; its voxels cannot be counted beforehand."""
+
+    steps: int
+
+    def require(self, value, where):
+        """Raise CheckFailed unless `value` is one."""
+        if not isinstance(value, list) or len(value) != 3:
+            raise CheckFailed(f"{where}: expected a tuple of 3: voxels, values, losses")
+        Array((None, 3), "i8").require(value[0], f"{where}, voxels")
+        Array((len(value[0]), 4)).require(value[1], f"{where}, values")
+        Array((self.steps,)).require(value[2], f"{where}, losses")
+
+
+def fitted(t, *given, function="fit_sparse"):
+    """`fit_sparse` of n, voxels, values, rays, target, rounds, steps and more."""
+    return t.call(function, *given, returns=Fit(given[5] * given[6]))
+
+
+def small_case(t, n=8, views=3, size=5):
+    """n, voxels, values, rays, target."""
+    voxels, values = lump(t, n, 0.6)
+    rays = looking(t, views, size)
+    order = t.rng.permutation(len(voxels))
+    return n, voxels[order], values[order], rays, t.rng.uniform(0.0, 1.0, (rays.shape[1], 3))
+
+
+BETWEEN = (
+    "after the last round the list is made anew; it must not be: between two rounds only, see (14)"
+)
+
+
+def require_same_list(t, got, voxels):
+    t.require(
+        np.array_equal(got, voxels),
+        "one round must leave the list of voxels as it is",
+        hint=BETWEEN,
     )
 
 
-def grown(t, n, voxels, steps):
-    """Nothing is pruned, all grow."""
-    alone = np.arange(len(voxels))[None]
-    return pruned(t, n, voxels, alone, np.ones(alone.shape), 0.5, steps)
-
-
-def some_shares(t, most):
-    """(row, share), (8, M) each: voxel v has the largest share most[v]; 0 means never sampled."""
-    read = np.flatnonzero(most > 0)
-    more = t.rng.choice(read, 7 * len(read) + 40)
-    missing = 40 - (8 * len(read) + 80) % 8
-    row = np.concatenate([read, more, np.full(missing, -1)])
-    less = most[more] * t.rng.uniform(0, 0.6, len(more))
-    share = np.concatenate([most[read], less, t.rng.uniform(1, 5, missing)])
-    order = t.rng.permutation(len(row))
-    return row[order].reshape(8, -1), share[order].reshape(8, -1)
+def rates():
+    return np.array([0.05, 0.05, 0.05, 0.4])
 
 
 @check(
-    "10.5.pruned",
-    points=3,
-    hint="the largest share of any sample decides: one view that needs a voxel is enough",
-    sole="who stays, asked without growing",
-)
-def the_largest_share_decides(t):
-    """Voxels stay whose largest share is above the threshold; those never sampled do not."""
-    n, count = 8, 60
-    voxels = voxels_in(t, n, count)
-    most = t.rng.uniform(0.1, 0.9, count)
-    most[::7] = most[-1] = 0.0
-    row, share = some_shares(t, most)
-    for threshold in (0.5, 0.0):
-        got = pruned(t, n, voxels, row, share, threshold, 0)
-        same_voxels(t, f"threshold {threshold}", n, got, voxels[most > threshold])
-    half = np.where(t.rng.random(count) < 0.5, 0.5, 0.25)
-    row, share = np.arange(count)[None], half[None]
-    got = pruned(t, n, voxels, row, share, 0.25, 0)
-    same_voxels(t, "a share equal to the threshold", n, got, voxels[half > 0.25])
-
-
-@check(
-    "10.5.grown",
-    points=3,
-    hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
-    sole="closed forms: one voxel, a corner, two steps at once",
-)
-def one_voxel_grows_into_a_cube(t):
-    """One voxel becomes a cube of side 2 s + 1, clipped at the border; two steps are twice one."""
-    n = 8
-    for steps in (1, 2):
-        middle = t.rng.integers(steps, n - steps, 3)
-        got = grown(t, n, middle[None], steps)
-        around = np.stack(
-            np.meshgrid(*[np.arange(m - steps, m + steps + 1) for m in middle], indexing="ij"),
-            axis=-1,
-        ).reshape(-1, 3)
-        same_voxels(t, f"one voxel and {steps} steps", n, got, around)
-        corner = np.array([[0, n - 1, 0]])
-        got = grown(t, n, corner, steps)
-        right = (steps + 1) ** 3
-        t.require(len(got) == right, f"a corner grows into {len(got)} voxels, expected {right}")
-        near = bool((np.abs(got - corner) <= steps).all())
-        t.require(near, "a corner grows out of its corner")
-    voxels = voxels_in(t, n, 6)
-    parts = np.concatenate([grown(t, n, voxels[k : k + 1], 1) for k in range(6)])
-    once = grown(t, n, voxels, 1)
-    same_voxels(t, "six voxels grow as each alone", n, once, np.unique(parts, axis=0))
-    same_voxels(t, "two steps at once", n, grown(t, n, voxels, 2), grown(t, n, once, 1))
-
-
-def photographed(t, n, voxels, values, rays):
-    """(colors, wanted, step) by `march` and `render`."""
-    count = rays.shape[1]
-    parts = Items(
-        Array((count, 3)),
-        Array((count, 2 * n), "bool"),
-        Array((count,)),
-        names=("colors", "wanted", "step"),
-    )
-    return t.call("adapters.picture", n, voxels, values, rays, returns=parts)
-
-
-@check(
-    "10.5.render",
+    "10.5.first",
     points=2,
-    needs=EARLIER[:3],
-    tolerance=SAME,
-    hint="a sample in an empty cell reads the full cell next to it: dilated by one, not less",
-    sole="skipping may save work, never change a picture",
+    tolerance=CHAINED,
+    hint="handout, equation (13): one Adam for all four channels, then sigma clamped to 0",
+    sole="tests the first steps only",
 )
-def skipping_changes_nothing(t):
-    """The picture of a sparse grid is that of all n^3 voxels, most of its samples skipped."""
-    n = 8
-    voxels, values = lump(t, n)
-    rays = looking(t, 3, 6)
-    some, wanted, step = photographed(t, n, voxels, values, rays)
-    every = np.argwhere(np.ones((n, n, n), bool))
-    dense = np.zeros((n**3, 4))
-    dense[voxels @ np.array([n * n, n, 1])] = values
-    whole, most, _ = photographed(t, n, every, dense, rays)
-    t.require(bool(whole.any()), "the picture is black")
-    t.close("colors", some, whole)
-    t.require(bool(most[step > 0].all()), "with every voxel active no sample may be skipped")
-    t.require(wanted.sum() < 0.8 * most.sum(), "hardly a sample was skipped")
+def the_first_steps(t):
+    """Adam's first step has the length RATES against the gradient; no sigma goes below 0."""
+    n, voxels, values, rays, target = small_case(t)
+    values[::2, 3] /= 20
+    values[1::2, 2], target[:, 2] = values[1::2, 2] / 20, 0.0  # some color falls below 0
+    parts = Items(Number(), Array(values.shape), names=("loss", "d_values"))
+    loss, d = t.call("adapters.gradient", n, voxels, values, rays, target, returns=parts)
+    got = fitted(t, n, voxels, values, rays, target, 1, 1, 0.5, 0)
+    moved = values - rates() * d / (np.abs(d) + 1e-10)
+    for part in (moved[:, :3], moved[:, 3]):
+        t.require(bool((part < 0).any() and (part > 0).any()), "the test case is not informative")
+    moved[:, 3] = np.maximum(moved[:, 3], 0)
+    require_same_list(t, got[0], voxels)
+    t.close("values", got[1], moved)
+    t.close("losses", got[2], np.array([loss]))
+    loss, second = t.call("adapters.gradient", n, voxels, got[1], rays, target, returns=parts)
+    m = (0.09 * d + 0.1 * second) / (1 - 0.9**2)
+    v = (0.0099 * d**2 + 0.01 * second**2) / (1 - 0.99**2)
+    then = fitted(t, n, voxels, values, rays, target, 1, 2, 0.5, 0)
+    moved = got[1] - rates() * m / (np.sqrt(v) + 1e-10)
+    moved[:, 3] = np.maximum(moved[:, 3], 0)
+    t.close("values after two steps", then[1], moved)
+
+
+def next_start(t, n, voxels, values, rays, threshold, grow):
+    """(voxels, values, kept) that a round after these begins with; kept: those there before."""
+    parts = Items(Array((None, 3), "i8"), Array((None,), "i8"), names=("voxels", "rows"))
+    following, rows = t.call(
+        "adapters.next_start", n, voxels, values, rays, threshold, grow, returns=parts
+    )
+    t.require(
+        len(rows) == len(following) and bool((rows < len(voxels)).all()),
+        "find_rows gives rows that no voxel has",
+    )
+    kept = rows >= 0
+    t.require(
+        0 < kept.sum() < len(voxels),
+        f"after a round {kept.sum()} of {len(voxels)} voxels stay; some should go, not all",
+        hint="are the values right? 10.5.first looks at them",
+    )
+    start = np.tile(np.array([0.5, 0.5, 0.5, 0.1]), (len(following), 1))
+    start[kept] = values[rows[kept]]
+    return following, start, kept
+
+
+def two_rounds(t, *given):
+    """`fitted`, where two rounds without steps have passed before."""
+    try:
+        return fitted(t, *given)
+    except StudentFailure as failure:
+        if failure.reason != "raised":
+            raise
+        advice = (
+            "begin each round with a new Adam and new samples: the old ones are of other voxels"
+        )
+        details = {"advice": advice, "exception": failure.private}  # which public checks may show
+        if failure.line is not None:
+            details["line"] = list(failure.line)
+        text = f"{failure.text}; two rounds without steps passed"
+        raise CheckFailed(text, details) from None
+
+
+@check(
+    "10.5.chain",
+    points=4,
+    tolerance=CHAINED,
+    hint="handout, equations (14) and (15): between rounds prune, grow, carry over, and start "
+    "Adam anew",
+    sole="carries values over from one list of voxels to the next",
+)
+def rounds_can_be_chained(t):
+    """Two rounds are one round, a new list with the old values in it, and one round more."""
+    n, voxels, values, rays, target = small_case(t)
+    for threshold, grow in ((0.05, 1), (0.02, 0)):
+        one = fitted(t, n, voxels, values, rays, target, 1, 2, threshold, grow)
+        require_same_list(t, one[0], voxels)
+        # Without steps nothing happens but (14) and (15).
+        following, start, kept = next_start(t, n, voxels, values, rays, threshold, grow)
+        carried = fitted(t, n, voxels, values, rays, target, 2, 0, threshold, grow)
+        same_voxels(t, "voxels after a round without steps", n, carried[0], following)
+        hint = "values stand with the wrong voxels: look up their rows in a table of the old ones"
+        t.close("values carried over", carried[1][kept], start[kept], FAITHFUL, hint=hint)
+        if not kept.all():
+            hint = "handout, equation (15): new voxels begin as START"
+            t.close("values of new voxels", carried[1][~kept], start[~kept], FAITHFUL, hint=hint)
+        following, start, kept = next_start(t, n, voxels, one[1], rays, threshold, grow)
+        both = two_rounds(t, n, voxels, values, rays, target, 2, 2, threshold, grow)
+        hint = "take the shares of the newest values, those after the last step of the round"
+        same_voxels(t, "voxels of the second round", n, both[0], following, hint)
+        two = fitted(t, n, following, start, rays, target, 1, 2, threshold, grow)
+        t.close("losses", both[2], np.concatenate([one[2], two[2]]))
+        t.close("values", both[1], two[1])
+    none = fitted(t, n, voxels, values, rays, target, 2, 0, threshold, grow)
+    t.require(len(none[2]) == 0, "without steps there are no losses")
+
+
+@check(
+    "10.5.start",
+    points=1,
+    hint="an array of the start has changed: copy it first",
+    sole="what students can run; a hidden check finds its mistake as well",
+)
+def the_start_is_left_alone(t):
+    """A second fit from the same arrays finds what the first one found."""
+    given = (*small_case(t), 2, 2, 0.01, 1)
+    same = agree(fitted(t, *given, function="adapters.fit_again"), fitted(t, *given))
+    t.require(same, "fit_sparse has written into an array that it was given")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +22,7 @@ PRINTED = 6e-7  # the handout rounds to six decimals
 
 class TestSphericalHarmonics(AssignmentTests):
     folder = FOLDER
+    long_figures = frozenset({"fig1_result"})
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +181,7 @@ def test_predictions_come_true(solution) -> None:
     d = solution.quadrature(6)[0]
     parity = solution.sh_basis(-d, 2) * np.repeat([1, -1, 1], [1, 3, 5])
     np.testing.assert_allclose(parity, solution.sh_basis(d, 2), atol=1e-14)
-    # The others are facts of Figures 4 and 6.
+    # The others are facts of Figures 5 and 7.
 
 
 def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
@@ -207,12 +209,13 @@ def test_the_exploration_runs_and_says_what_it_did(
 ) -> None:
     for name in ("explore.py", "plenoxels.py"):
         (tmp_path / name).write_bytes((FOLDER / name).read_bytes())
+    shutil.copytree(FOLDER / "data", tmp_path / "data")
     order = [sys.executable, "explore.py", "--views", "5", "--pixels", "4", "--steps", "3"]
     order.extend(options or ("--coarse", "3", "--levels", "2"))
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     assert "5 photographs of 4 x 4" in ran.stdout
     assert "coarse to fine: " in ran.stdout
-    assert ran.stdout.count("each held-out view: ") == 2
+    assert ran.stdout.count("dB on held-out views") >= 2
     assert "core" in ran.stdout
     assert (tmp_path / "plenoxels.png").stat().st_size > 5_000

@@ -2,26 +2,32 @@
 
 from photograd_course.grading import Array, Subject, hidden_check
 
-from ..task_4 import EXACT, back, some_samples
+from ..common import FAITHFUL, same_voxels
+from ..task_4 import pruned, some_shares, voxels_in
 
 
-def gathered(t, n):
-    """Arguments of `sample_sparse_adjoint`, for n samples."""
-    return 5, *some_samples(t, 5, n), t.rng.uniform(-1, 1, (n, 3))
+def shared(t, n):
+    """Arguments of `prune_and_dilate`, for n voxels."""
+    most = t.rng.uniform(0.1, 0.9, n)
+    return 4, voxels_in(t, 4, n), *some_shares(t, most), 0.5, 1
 
 
 @hidden_check(
     "10.4.hidden",
-    points=3,
-    calls=("sample_sparse_adjoint",),
-    tolerance=EXACT,
-    sole="the same mistakes at unseen samples",
-    battery=[Subject("sample_sparse_adjoint", gathered, lambda _: Array((5, 3)))],
+    points=2,
+    calls=("prune_and_dilate",),
+    sole="the same mistakes at unseen voxels",
+    battery=[
+        Subject("prune_and_dilate", shared, lambda _: Array((None, 3), "i8"), tolerance=FAITHFUL)
+    ],
 )
-def the_adjoint_at_random_samples(t):
-    """The adjoint is right for random samples, many of one voxel and none of another."""
-    for count, samples, channels in ((7, 30, 4), (1, 5, 1), (90, 40, 3)):
-        row, weight = some_samples(t, count, samples)
-        g = t.rng.uniform(-1, 1, (samples, channels))
-        right = t.reference.sample_sparse_adjoint(count, row, weight, g)
-        t.close("d_values", back(t, count, row, weight, g), right)
+def random_voxels_are_pruned_and_grow(t):
+    """Random voxels with random shares are pruned and grow as they should."""
+    for n, count, steps in ((8, 100, 1), (4, 10, 2), (16, 50, 0), (2, 3, 1), (8, 20, 3)):
+        voxels = voxels_in(t, n, count)
+        most = t.rng.uniform(0.1, 0.9, count)
+        most[1::5] = most[-1] = 0.0
+        row, share = some_shares(t, most)
+        right = t.reference.prune_and_dilate(n, voxels, row, share, 0.5, steps)
+        got = pruned(t, n, voxels, row, share, 0.5, steps)
+        same_voxels(t, f"{steps} steps", n, got, right)

@@ -54,7 +54,7 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     if (folder / "adapters.py").exists():
         files["adapters.py"] = _encode(_text(folder / "adapters.py"))
     for pattern in COPIED:
-        for path in sorted(folder.glob(pattern)):
+        for path in sorted(p for p in folder.glob(pattern) if p.is_file()):
             files[path.relative_to(folder).as_posix()] = path.read_bytes()
     return dict(sorted(files.items()))
 
