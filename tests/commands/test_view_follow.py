@@ -100,6 +100,21 @@ def test_nobody_looks_nothing_is_copied() -> None:
     assert page.said == []
 
 
+def test_a_page_that_fails_does_not_end_the_fit(
+    capture_folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Broken(Watching):
+        def replace(self, viewed: Viewed, said: str = "") -> None:
+            del viewed, said
+            raise ValueError("a socket that is gone")
+
+    job = Fit.start(load_capture(capture_folder), options("dense_grid"))
+    view = FitView(Broken(), seconds=0.0)
+    view.look(job)
+    view.look(job)
+    assert capsys.readouterr().err.count("a socket that is gone") == 1
+
+
 def test_the_folder_of_a_running_fit_is_shown_as_it_is_saved(
     model_folder: Path, tmp_path: Path
 ) -> None:

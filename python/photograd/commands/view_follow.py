@@ -7,6 +7,7 @@ numbers do not depend on whether anybody looks.
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -103,7 +104,11 @@ class FitView:
         if now < self._next or not self._page.watched:
             return
         self._next = now + self._seconds
-        self._page.replace(viewed_fit(job), words(job))
+        try:
+            self._page.replace(viewed_fit(job), words(job))
+        except Exception as failure:  # of a page: no reason for a fit of hours to end
+            note(f"warning: the page is not shown any more: {failure}", style="yellow")
+            self._next = math.inf
 
 
 @contextmanager

@@ -61,14 +61,14 @@ class GradientLayer:
 
     Attributes:
         said: what the last picture shows, in Markdown.
-        latest: the gradient of the last picture, for picking; None before there is one.
+        latest: the gradient of the last picture; None before there is one.
     """
 
     def __init__(self, on_change: Callable[[str], None] = lambda _: None) -> None:
         """Begin without any.
 
         Args:
-            on_change: takes what a picture shows, when that is another gradient.
+            on_change: takes what a picture shows.
         """
         self.said = ""
         self.latest: PhotographGradient | None = None
@@ -138,8 +138,6 @@ class GradientLayer:
         return any(of is shown and found is self.latest for of, found in [*self._kept.values()])
 
     def _say(self, found: PhotographGradient, view: View) -> None:
-        if found is self.latest:
-            return
         self.latest = found
         ends = "" if found.kind == "surface" else f" Colors end at ±{found.limit:.3g}."
         self.said = (

@@ -17,6 +17,8 @@ from photograd.commands.view_photographs import Photographs
 
 FRUSTUM = 0.1
 """Size of a camera, in diagonals of the scene."""
+ALONE = 0.03
+"""The same where nothing is drawn: then the scene is as large as the path of the cameras."""
 MOST_PHOTOGRAPHS = 100
 THUMBNAIL = 96
 MOST_POINTS = 200_000
@@ -55,7 +57,7 @@ class Frusta:
                 f"/photographs/{view.name}",
                 fov=2 * math.atan(0.5 * camera.height / camera.fy),
                 aspect=camera.width / camera.height,
-                scale=FRUSTUM * photographs.reach,
+                scale=(FRUSTUM if points is None else ALONE) * photographs.reach,
                 image=thumbnail,
                 wxyz=quaternion_from_rotation(camera.world_from_camera[:3, :3]),
                 position=camera.position,

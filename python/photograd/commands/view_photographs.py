@@ -23,6 +23,13 @@ if TYPE_CHECKING:
     from photograd.capture.view import View
 
 LAYERS = ("photograph", "split", "difference")
+EXPLAIN = {
+    "photograph": "the photograph, over what is rendered.",
+    "split": "the photograph to the left, what is rendered to the right.",
+    "difference": "|rendering - photograph|, mean over the channels, from purple to yellow; gray "
+    "has no photograph.",
+}
+HOW_TO = "Click on a photograph to look through it."
 NEAREST = "nearest"
 THROUGH = 1e-3
 """In diagonals of the scene: so far from a photograph's camera is still at it."""
@@ -158,7 +165,7 @@ def combined(layer: str, rendered: Array, seen: Array, inside: NDArray[np.bool_]
         inside: (H, W) where it has pixels.
     """
     if layer == "difference":
-        return difference_colors(np.abs(rendered - seen).mean(axis=2), inside)
+        return difference_colors(rendered, seen, inside)
     shown = inside.copy()
     if layer == "split":
         shown[:, shown.shape[1] // 2 :] = False
@@ -169,21 +176,34 @@ def combined(layer: str, rendered: Array, seen: Array, inside: NDArray[np.bool_]
     return np.asarray(found, np.float64)
 
 
-def difference_colors(difference: Array, inside: NDArray[np.bool_]) -> FloatArray:
-    """(H, W, 3) colors of absolute differences (H, W), gray where there is none.
+def difference_limit(rendered: Array, seen: Array, inside: NDArray[np.bool_]) -> float:
+    """The end of the scale of mean absolute differences.
 
     Args:
-        difference: (H, W), at least 0.
-        inside: (H, W) where it counts.
+        rendered: (H, W, 3) display values.
+        seen: (H, W, 3) of the photograph.
+        inside: (H, W) where it has pixels.
+    """
+    from photograd_course.viz.scale import nice_limit
+
+    difference = np.abs(rendered - seen).mean(axis=2)[inside]
+    return nice_limit(float(np.quantile(difference, QUANTILE)) if difference.size else 0.0)
+
+
+def difference_colors(rendered: Array, seen: Array, inside: NDArray[np.bool_]) -> FloatArray:
+    """(H, W, 3) colors of mean absolute differences, gray where there is none.
+
+    Args:
+        rendered: (H, W, 3) display values.
+        seen: (H, W, 3) of the photograph.
+        inside: (H, W) where it has pixels.
     """
     import matplotlib as mpl
     from matplotlib.colors import to_rgb
     from photograd_course.viz import style
-    from photograd_course.viz.scale import nice_limit
 
-    most = float(np.quantile(difference[inside], QUANTILE)) if inside.any() else 0.0
-    limit = nice_limit(most)
-    colors = np.asarray(mpl.colormaps[style.MAGNITUDE_MAP](np.clip(difference / limit, 0, 1)))
+    share = np.abs(rendered - seen).mean(axis=2) / difference_limit(rendered, seen, inside)
+    colors = np.asarray(mpl.colormaps[style.MAGNITUDE_MAP](np.clip(share, 0, 1)))
     found: FloatArray = colors[..., :3]
     found[~inside] = to_rgb(style.MISSING)
     return found
@@ -192,13 +212,17 @@ def difference_colors(difference: Array, inside: NDArray[np.bool_]) -> FloatArra
 class Overlay:
     """Pictures with a photograph over, beside or against them; the last photograph is kept."""
 
-    def __init__(self, photographs: Photographs) -> None:
+    def __init__(
+        self, photographs: Photographs, on_change: Callable[[str], None] = lambda _: None
+    ) -> None:
         """Begin without any read.
 
         Args:
             photographs: in the frame of the page.
+            on_change: takes what a picture shows, in Markdown.
         """
         self.photographs = photographs
+        self._on_change = on_change
         self._kept: tuple[str, Array] | None = None
 
     def pixels(self, view: View) -> Array:
@@ -226,12 +250,16 @@ class Overlay:
             IoError: the photograph cannot be read.
         """
         view = self.photographs.through(camera)
+        self._on_change(f"{HOW_TO}" if view is None else f"**{view.name}**: {EXPLAIN[layer]}")
         for picture in draw(camera):
             if picture is None or view is None:
                 yield picture
                 continue
             at = resized(camera, picture.color.shape[:2])
             seen, inside = photograph_seen(self.pixels(view), view.camera, at)
+            if layer == "difference":
+                ends = difference_limit(picture.color, seen, inside)
+                self._on_change(f"**{view.name}**: {EXPLAIN[layer]} Colors end at {ends:.3g}.")
             yield replace(picture, color=combined(layer, picture.color, seen, inside))
 
 

@@ -26,6 +26,7 @@ from photograd.commands.view_hits import Pick
 from photograd.commands.view_painter import Painter, Wish, camera_of, layer_image
 from photograd.commands.view_panel import Frusta, StepSlider, absent_gradient
 from photograd.commands.view_photographs import (
+    HOW_TO,
     LAYERS,
     NEAREST,
     Overlay,
@@ -94,12 +95,14 @@ class Page:
         if capture is not None:
             turn = (lambda camera, _: camera) if viewed is None else viewed.from_capture
             photographs = Photographs.of(capture, turn, self._reach)
-            self._overlay = Overlay(photographs)
+            self._overlay = Overlay(photographs, self._say)
             points = capture if viewed is None else None
             self._frusta = Frusta(self._server, photographs, points, self._look_through)
         self._gradients = GradientLayer(self._say)
-        self._add_controls()
         self._painter = Painter(self._pictures, self._fail)
+        self._ready = False  # a page of an earlier server may have come back already
+        self._add_controls()
+        self._ready = True
         self._server.on_client_connect(self._welcome)
         self._server.on_client_disconnect(lambda client: self._painter.forget(client.client_id))
         if viewed is not None:
@@ -142,7 +145,8 @@ class Page:
         return self._overlay.pictures(layer, draw, camera)
 
     def _say(self, text: str) -> None:
-        self._status.content = text
+        if self._status.content != text:
+            self._status.content = text
 
     def _fail(self, text: str) -> None:
         note(f"warning: {text}", style="yellow")
@@ -183,6 +187,8 @@ class Page:
         self._painter.wish(Wish(client.client_id, camera, show))
 
     def _ask_all(self) -> None:
+        if not self._ready:
+            return
         for client in self._server.get_clients().values():
             self._ask(client)
 
@@ -204,12 +210,14 @@ class Page:
             def _(_: Any) -> None:
                 self._layer = layer.value
                 self._bar.visible = layer.value == GRADIENT
-                if self._overlay is not None and layer.value in LAYERS:
-                    self._say("Click on a photograph to look through it.")
+                if layer.value != GRADIENT:
+                    self._say("")
                 self._ask_all()
 
         self._bar = gui.add_image(scale_bar(), visible=False)
-        self._status = gui.add_markdown("" if viewed is None else self._first_words(viewed))
+        compared = self._overlay is not None
+        said = HOW_TO if viewed is None else absent_gradient(viewed, compared)
+        self._status = gui.add_markdown(said)
         self._steps = StepSlider(gui, self._show_step)
         if viewed is not None:
             self._steps.replace(viewed.steps, viewed.last)
@@ -225,9 +233,6 @@ class Page:
         if viewed.tracer is not None:
             add_controls(gui, SceneParameters(viewed.tracer), self._ask_all)
 
-    def _first_words(self, viewed: Viewed) -> str:
-        return absent_gradient(viewed, self._overlay is not None) or ""
-
     def _show_step(self, shown: Shown) -> None:
         self._shown = shown
         self._ask_all()
@@ -240,6 +245,14 @@ class Page:
         def _(_: Any) -> None:
             assert self._frusta is not None
             self._frusta.show(visible=boxed.value)
+
+        look = gui.add_button("Look through the nearest")
+
+        @look.on_click  # type: ignore[untyped-decorator]
+        def _(event: Any) -> None:
+            camera = self._camera(event.client)
+            view = photographs.views[photographs.nearest(camera)]
+            self._look_through(event.client, view.camera)
 
         if not gradient:
             return
