@@ -15,10 +15,13 @@ from photograd.capture.frames import quaternion_from_rotation
 from photograd.commands.view_drawing import Shown, Viewed
 from photograd.commands.view_photographs import Photographs
 
-FRUSTUM = 0.1
+FRUSTUM = 0.05
 """Size of a camera, in diagonals of the scene."""
 ALONE = 0.03
 """The same where nothing is drawn: then the scene is as large as the path of the cameras."""
+NEAR = 0.4
+"""In diagonals of the scene: a photograph that is nearer to the eye would cover what is drawn."""
+GRAY = (150, 150, 150)
 MOST_PHOTOGRAPHS = 100
 THUMBNAIL = 96
 MOST_POINTS = 200_000
@@ -48,7 +51,7 @@ class Frusta:
         """
         self._photographs, self._visible, self._clicked = photographs, True, -math.inf
         self._handles: dict[str, Any] = {}
-        self._hidden = ""
+        self._hidden: frozenset[str] = frozenset()
         views = photographs.views
         for view in views[:: -(-len(views) // MOST_PHOTOGRAPHS)]:
             camera = view.camera
@@ -59,6 +62,9 @@ class Frusta:
                 aspect=camera.width / camera.height,
                 scale=(FRUSTUM if points is None else ALONE) * photographs.reach,
                 image=thumbnail,
+                color=GRAY,
+                thickness=1.0,
+                thickness_units="screen",
                 wxyz=quaternion_from_rotation(camera.world_from_camera[:3, :3]),
                 position=camera.position,
             )
@@ -84,21 +90,18 @@ class Frusta:
         """
         self._visible = visible
         for name, handle in self._handles.items():
-            handle.visible = visible and name != self._hidden
+            handle.visible = visible and name not in self._hidden
 
     def hide_at(self, camera: Camera) -> None:
-        """Hide the one that a camera looks through, which would cover everything.
+        """Hide those that are close to the eye, and the one that it looks through.
 
         Args:
             camera: of the page.
         """
-        view = self._photographs.through(camera)
-        hidden = "" if view is None else view.name
-        if hidden == self._hidden:
-            return
-        for name, visible in ((self._hidden, self._visible), (hidden, False)):
+        hidden = frozenset(self._photographs.near(camera, NEAR))
+        for name in hidden ^ self._hidden:
             if name in self._handles:
-                self._handles[name].visible = visible
+                self._handles[name].visible = self._visible and name not in hidden
         self._hidden = hidden
 
 

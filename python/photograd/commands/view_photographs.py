@@ -91,6 +91,21 @@ class Photographs:
         turned = np.arccos(np.clip(ahead @ camera.forward, -1.0, 1.0)) / (0.5 * math.pi)
         return int((away + AHEAD * turned).argmin())
 
+    def near(self, camera: Camera, share: float) -> list[str]:
+        """Names of the photographs that were taken close to a camera.
+
+        Args:
+            camera: of the page.
+            share: how far away, in diagonals of the scene.
+        """
+        reach = share * self.reach
+        away = (view.camera.position - camera.position for view in self.views)
+        return [
+            view.name
+            for view, way in zip(self.views, away, strict=True)
+            if float(np.linalg.norm(way)) <= reach
+        ]
+
     def through(self, camera: Camera) -> View | None:
         """The photograph at whose place a camera is; of several the nearest in direction.
 

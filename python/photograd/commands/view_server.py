@@ -280,7 +280,11 @@ class Page:
         lines = np.zeros((0, 2, 3)) if found is None else found.lines @ shown.field_from_page
         colors = np.broadcast_to(np.array(MARKED, np.uint8), lines.shape)
         self._server.scene.add_line_segments(
-            MARK, points=lines.astype(np.float32), colors=colors, line_width=3.0
+            MARK,
+            points=lines.astype(np.float32),
+            colors=colors,
+            thickness=3.0,
+            thickness_units="screen",
         )
 
     def _hit(self, shown: Shown, camera: Camera, at: tuple[float, float]) -> Pick | None:
