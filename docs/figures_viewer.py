@@ -19,7 +19,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
-from tests.commands.browser import Browser, chromium, free_port, photograd  # noqa: E402
+from tests.commands.browser import Browser, chromium, free_port, photograd, waited  # noqa: E402
 
 PICTURE = ROOT / "docs" / "images" / "viewer.jpg"
 SIZE = 1280, 720
@@ -31,10 +31,10 @@ PAUSE = 6.0  # seconds
 
 def settled(browser: Browser) -> Any:
     """The page after a pause; without a screenshot now and then, a headless page draws nothing."""
-    for _ in range(3):
+    for _ in range(2):
         time.sleep(PAUSE)
-        browser.picture()
-    return browser.picture()
+        waited(browser.picture)
+    return waited(browser.picture)
 
 
 def main() -> None:

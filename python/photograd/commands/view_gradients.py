@@ -365,12 +365,14 @@ def projected(
     distance = np.linalg.norm(points - gradient.camera.position, axis=1) if along_ray else ahead
     values = np.zeros(len(points))
     with np.errstate(invalid="ignore"):
-        inside = (pixel >= 0).all(axis=1) & (pixel < gradient.values.shape[::-1]).all(axis=1)
+        inside = np.asarray(
+            (pixel >= 0).all(axis=1) & (pixel < gradient.values.shape[::-1]).all(axis=1)
+        )
     column, row = pixel[inside].astype(np.int64).T
     surface = gradient.depth[row, column]
     hidden = distance[inside] > (1 + BEHIND) * surface  # not where nothing is: NaN
     values[inside] = np.where(hidden, 0.0, gradient.values[row, column])
-    missing = ~inside
+    missing: NDArray[np.bool_] = np.logical_not(inside)
     missing[inside] = hidden
     size = camera.height, camera.width
     return values.reshape(size), missing.reshape(size)

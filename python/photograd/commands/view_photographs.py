@@ -85,9 +85,9 @@ class Photographs:
         Args:
             camera: of the page.
         """
-        places = np.stack([view.camera.position for view in self.views])
+        positions = np.stack([view.camera.position for view in self.views])
         ahead = np.stack([view.camera.forward for view in self.views])
-        away = np.linalg.norm(places - camera.position, axis=1) / self.reach
+        away = np.linalg.norm(positions - camera.position, axis=1) / self.reach
         turned = np.arccos(np.clip(ahead @ camera.forward, -1.0, 1.0)) / (0.5 * math.pi)
         return int((away + AHEAD * turned).argmin())
 

@@ -73,7 +73,7 @@ def pick(
         return pick_gaussian(field, camera, at, gradient)
     if isinstance(field, SurfaceField | TexturedMesh):
         return pick_triangle(field, origin, direction, gradient)
-    return pick_place(field, camera, at, background)
+    return pick_position(field, camera, at, background)
 
 
 def weights_along(field: VoxelField, origin: Array, direction: Array) -> tuple[Array, Array]:
@@ -107,7 +107,7 @@ def densities(field: VoxelField, index: FloatArray) -> FloatArray:
     if not isinstance(field, GridField):
         values, _ = field.extinction()
         i, j, k = np.clip(index.astype(np.int64), 0, np.array(values.shape) - 1).T
-        return values[i, j, k].astype(np.float64)
+        return np.asarray(values[i, j, k], np.float64)
     empty = getattr(field, "background_density", 0.0)
     raw = field.to_voxels(field.density_rows(field.params)).astype(np.float64)
     raw[~field.active_voxels] = empty
@@ -282,7 +282,7 @@ def pick_triangle(
     return Pick(f"Triangle {face}", facts, weights @ corners, closed(corners))
 
 
-def pick_place(
+def pick_position(
     field: Fittable, camera: Camera, at: tuple[float, float], background: Array | None
 ) -> Pick | None:
     """The mean place along a ray of a field whose parameters lie nowhere in space.
@@ -300,10 +300,10 @@ def pick_place(
         return None
     origin, direction = ray_through(camera, at)
     along = depth if "rays" in field.capabilities else depth / float(direction @ camera.forward)
-    place = origin + along * direction
+    position = origin + along * direction
     facts = {"distance": f"{along:.4g} m", "opacity": f"{opacity:.4g}"}
     facts["color"] = f"{numbers(picture.color[0, 0])}, display values"
     facts["parameters"] = ", ".join(f"{name} {p.shape}" for name, p in field.params.items())
     reach = 0.01 * float(np.linalg.norm(field.box[1] - field.box[0]))
-    lines = np.stack([place - reach * np.eye(3), place + reach * np.eye(3)], axis=1)
-    return Pick(f"A place of {field.name}", facts, place, lines)
+    lines = np.stack([position - reach * np.eye(3), position + reach * np.eye(3)], axis=1)
+    return Pick(f"A place of {field.name}", facts, position, lines)

@@ -192,8 +192,8 @@ def _where(
         if found is None:  # it moves while the shutter is open
             return f"Mesh {shape.name}", *unknown
         of = f" of instance {found.mesh}" if shape.instances else ""
-        place = found.weights @ found.corners
-        return f"Triangle {found.face}{of}", place, closed(found.corners)
+        position = found.weights @ found.corners
+        return f"Triangle {found.face}{of}", position, closed(found.corners)
     if isinstance(shape, SphereShape):
         t = _sphere_distance(shape, origin, direction)
         return f"Sphere {shape.name}", *_cross(origin + t * direction, 0.1 * shape.radius)
@@ -201,9 +201,9 @@ def _where(
     hits = shape.ready.trace(origin[None], direction[None])
     if not hits.hit[0]:
         return f"Signed distance field {shape.name}", *unknown
-    place = origin + float(hits.t[0]) * direction
+    position = origin + float(hits.t[0]) * direction
     reach = 0.02 * float(np.linalg.norm(shape.box[1] - shape.box[0]))
-    return f"Signed distance field {shape.name}", *_cross(place, reach)
+    return f"Signed distance field {shape.name}", *_cross(position, reach)
 
 
 def _sphere_distance(shape: SphereShape, origin: FloatArray, direction: FloatArray) -> float:
@@ -217,9 +217,9 @@ def _sphere_distance(shape: SphereShape, origin: FloatArray, direction: FloatArr
     return near if near > 0 else far
 
 
-def _cross(place: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
-    """A place, and three short lines through it."""
-    return place, np.stack([place - reach * np.eye(3), place + reach * np.eye(3)], axis=1)
+def _cross(position: FloatArray, reach: float) -> tuple[FloatArray, FloatArray]:
+    """A position, and three short lines through it."""
+    return position, np.stack([position - reach * np.eye(3), position + reach * np.eye(3)], axis=1)
 
 
 def add_controls(gui: Any, parameters: SceneParameters, on_change: Callable[[], None]) -> None:
