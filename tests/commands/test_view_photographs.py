@@ -153,7 +153,7 @@ def test_the_frustum_that_is_looked_through_is_hidden(photographs: Photographs) 
     frusta.hide_at(second.camera)
     assert hidden() == [f"/photographs/{second.name}"]
     frusta.show(visible=False)
-    frusta.hide_at(moved(second.camera, 1.0))
+    frusta.hide_at(moved(second.camera, 1.5))
     assert len(hidden()) == len(photographs.views)
     frusta.show(visible=True)
     assert hidden() == []
