@@ -15,7 +15,7 @@ from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
 from photograd.commands import view_drawing
 from photograd.commands.view_drawing import reduced, strips, viewed_file, viewed_scene
-from photograd.commands.view_server import Painter, Wish, camera_of, layer_image
+from photograd.commands.view_painter import Painter, Wish, camera_of, layer_image
 from photograd.errors import SceneError
 from photograd.fitting import load_model
 from photograd.fitting.drawing import Picture, draw_field
@@ -55,7 +55,7 @@ def test_steps_of_a_fit_are_shown(model_folder: Path) -> None:
     viewed = viewed_file(model_folder)
     (camera,) = orbit_cameras(viewed.box, 1, size=24)
     assert sorted(viewed.steps) == [0, 1, 4, 12, 40]
-    first, last = (pictures(viewed.steps[step], camera)[-1].color for step in (0, 40))
+    first, last = (pictures(viewed.steps[step].draw, camera)[-1].color for step in (0, 40))
     assert np.abs(first - last).max() > 0.2
     np.testing.assert_array_equal(last, pictures(viewed.draw, camera)[-1].color)
     assert viewed.capture is not None

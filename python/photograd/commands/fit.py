@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any
 
 import typer
 from photograd_course.cli import (
@@ -21,7 +21,7 @@ from photograd_course.cli import (
 
 from photograd._checkpoint import FILE_NAME
 from photograd._descend import LOSS_COLUMN, progress_bar, run_folder
-from photograd._fit_options import BACKGROUNDS, DECODES, DENSITY_CONTROLS, MAX_DEGREE, FitOptions
+from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.fit_image import fit_picture, is_picture
@@ -32,6 +32,27 @@ from photograd.commands.fit_mesh import (
     RemeshOption,
     read_mesh_for,
 )
+from photograd.commands.fit_options import (
+    AllowBlindOption,
+    BackgroundOption,
+    CheckpointOption,
+    DecodeOption,
+    DegreeOption,
+    DensityControlOption,
+    FreezeOption,
+    GaussiansOption,
+    ImportanceOption,
+    LearningRateOption,
+    PruneOption,
+    RaysOption,
+    RepresentationOption,
+    ResolutionOption,
+    ResumeOption,
+    StartFromOption,
+    StepsOption,
+    TotalVariationOption,
+    ViewOption,
+)
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
@@ -41,8 +62,9 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
+from photograd.commands.view_follow import shown_in_browser
 from photograd.errors import RangeError, message
-from photograd.fields import TexturedMesh, fittable
+from photograd.fields import TexturedMesh
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.freeze import learn_freeze_refine
@@ -50,139 +72,12 @@ from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import (
     FitResult,
+    Progress,
     options_for,
     refuse_without_effect,
     summary,
-    users_of,
 )
 from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
-
-
-def _defaults(option: str) -> str:
-    """The default of an option, and of what has one of its own."""
-    others = ", ".join(
-        f"{name}: {kind.fit_defaults[option]}"
-        for name, kind in fittable().items()
-        if option in kind.fit_defaults
-    )
-    return f"{getattr(FitOptions(), option)}; {others}"
-
-
-def _users(option: str) -> str:
-    return ", ".join(users_of(option))
-
-
-RepresentationOption: TypeAlias = Annotated[
-    str, typer.Option("--representation", help=f"How the scene is stored: {', '.join(fittable())}.")
-]
-StepsOption: TypeAlias = Annotated[
-    int | None,
-    typer.Option(
-        "--steps", min=1, help="Steps of gradient descent.", show_default=_defaults("steps")
-    ),
-]
-ResolutionOption: TypeAlias = Annotated[
-    int | None,
-    typer.Option(
-        "--resolution",
-        min=8,
-        help="Voxels along the longest edge, or texels along that of a texture.",
-        show_default=_defaults("resolution"),
-    ),
-]
-RaysOption: TypeAlias = Annotated[
-    int | None,
-    typer.Option(
-        "--rays",
-        min=1,
-        help="Rays a step; Gaussians take whole views.",
-        show_default=_defaults("rays"),
-    ),
-]
-LearningRateOption: TypeAlias = Annotated[
-    float, typer.Option("--learning-rate", help="Factor on the built-in rates.")
-]
-TotalVariationOption: TypeAlias = Annotated[
-    float,
-    typer.Option("--total-variation", min=0.0, help="Weight of the smoothness prior of grids."),
-]
-DegreeOption: TypeAlias = Annotated[
-    int | None,
-    typer.Option(
-        "--degree",
-        min=0,
-        max=MAX_DEGREE,
-        show_default=_defaults("degree"),
-        help=f"Degree of the harmonics of {_users('degree')}.",
-    ),
-]
-PruneOption: TypeAlias = Annotated[
-    float | None,
-    typer.Option(
-        "--prune",
-        min=0.0,
-        show_default=_defaults("prune"),
-        help=f"Drop voxels of {_users('prune')} that weigh less in every pixel; 0: none.",
-    ),
-]
-GaussiansOption: TypeAlias = Annotated[
-    int, typer.Option("--gaussians", min=1, help="Most Gaussians that there may be.")
-]
-DensityControlOption: TypeAlias = Annotated[
-    str, typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}.")
-]
-DecodeOption: TypeAlias = Annotated[
-    str,
-    typer.Option(
-        "--decode",
-        help=f"Of {_users('decode')}: {' or '.join(DECODES)}, where the network is evaluated.",
-    ),
-]
-ImportanceOption: TypeAlias = Annotated[
-    int,
-    typer.Option(
-        "--importance",
-        min=0,
-        help=f"Samples of a ray of {_users('importance')} by importance; 0: all evenly spaced.",
-    ),
-]
-StartFromOption: TypeAlias = Annotated[
-    Path | None,
-    typer.Option(
-        "--start-from",
-        help="Model on whose surfaces Gaussians begin, from whose voxels an octree is cut, that a "
-        "plenoctree tabulates, that leaf_mlps are distilled from, whose voxels leaf_codes take, or "
-        "whose Gaussians gaussian_codes take; "
-        "or, for a textured_mesh, a textured_surface or a mesh, a mesh "
-        "file with texture coordinates: "
-        f"{', '.join(MESH_SUFFIXES)}.",
-        metavar="MODEL",
-    ),
-]
-FreezeOption: TypeAlias = Annotated[
-    bool,
-    typer.Option(
-        "--freeze",
-        help="Hold the structure once it is known, and report PSNR, bytes and the time of a frame "
-        "then and at the end.",
-    ),
-]
-BackgroundOption: TypeAlias = Annotated[
-    str, typer.Option("--background", help=f"auto, {', '.join(BACKGROUNDS)}.")
-]
-CheckpointOption: TypeAlias = Annotated[
-    float, typer.Option("--checkpoint-seconds", min=0.0, help="Time between checkpoints.")
-]
-AllowBlindOption: TypeAlias = Annotated[
-    bool, typer.Option("--allow-blind", help="Fit even if some cameras do not see the scene.")
-]
-ResumeOption: TypeAlias = Annotated[
-    bool, typer.Option("--resume", help="Continue the fit in --out; its options are kept.")
-]
-
-
-# `photograd fit`: recover a scene from a capture.
-
 
 DEFAULTS = FitOptions()
 
@@ -230,6 +125,7 @@ def fit(
     allow_outside: AllowOutsideOption = False,
     checkpoint_seconds: CheckpointOption = 30.0,
     allow_blind: AllowBlindOption = False,
+    view: ViewOption = False,
     resume: ResumeOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
@@ -277,11 +173,11 @@ def fit(
         options = options_for(representation, **chosen)
         first = first_model(start_from, representation) if start_from else None
         job = _start(loaded, options, first, allow_blind=allow_blind)
-    run_and_emit(job, out, checkpoint_seconds, freeze=freeze, as_json=as_json)
+    run_and_emit(job, out, checkpoint_seconds, freeze=freeze, view=view, as_json=as_json)
 
 
 def run_and_emit(
-    job: Fit, out: Path, checkpoint_seconds: float, *, freeze: bool, as_json: bool
+    job: Fit, out: Path, checkpoint_seconds: float, *, freeze: bool, view: bool, as_json: bool
 ) -> None:
     """Run a fit, write what it leaves, and say how it went.
 
@@ -290,13 +186,16 @@ def run_and_emit(
         out: its folder.
         checkpoint_seconds: between two checkpoints.
         freeze: as for `run_and_score`.
+        view: whether a browser can show it.
         as_json: whether the report is one line of JSON.
 
     Raises:
         typer.Exit: it was stopped.
     """
-    with stop_on_signals() as stopping:
-        result, moments = run_and_score(job, out, stopping, checkpoint_seconds, freeze=freeze)
+    with stop_on_signals() as stopping, shown_in_browser(job, out, view=view) as look:
+        result, moments = run_and_score(
+            job, out, stopping, checkpoint_seconds, freeze=freeze, look=look
+        )
     emit(summary(result) | moments | exported(job, out), as_json=as_json, title="fit")
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
@@ -304,7 +203,13 @@ def run_and_emit(
 
 
 def run_and_score(
-    job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float, *, freeze: bool
+    job: Fit,
+    out: Path,
+    stopping: Callable[[], bool],
+    checkpoint_seconds: float,
+    *,
+    freeze: bool,
+    look: Callable[[Fit], None],
 ) -> tuple[FitResult, dict[str, Any]]:
     """Run a fit; with `freeze` also {"frozen": ..., "refined": ...}, once it has ended.
 
@@ -314,14 +219,15 @@ def run_and_score(
         stopping: asked after each step.
         checkpoint_seconds: between two checkpoints.
         freeze: whether its structure is held once it is known, and both moments are scored.
+        look: called with the fit after each step.
     """
     if not freeze:
-        return run_with_bar(job, out, stopping, checkpoint_seconds), {}
+        return run_with_bar(job, out, stopping, checkpoint_seconds, look), {}
     results = []
 
     def run(fit: Fit, folder: Path, enough: Callable[[], bool]) -> FitResult:
         either = lambda: stopping() or enough()  # noqa: E731
-        results.append(run_with_bar(fit, folder, either, checkpoint_seconds))
+        results.append(run_with_bar(fit, folder, either, checkpoint_seconds, look))
         return results[-1]
 
     found = learn_freeze_refine(job, out, run=run)
@@ -382,9 +288,13 @@ def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:
 
 
 def run_with_bar(
-    job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float = 30.0
+    job: Fit,
+    out: Path,
+    stopping: Callable[[], bool],
+    checkpoint_seconds: float = 30.0,
+    look: Callable[[Fit], None] = lambda _: None,
 ) -> FitResult:
-    """Run a fit under a live progress bar on stderr."""
+    """Run a fit under a live progress bar on stderr; `look` is called with it after each step."""
     columns = (
         LOSS_COLUMN,
         Column("psnr", "{:.2f} dB".format, label="PSNR"),
@@ -392,6 +302,12 @@ def run_with_bar(
         Column("rays_per_second", "{:.2e}".format, label="rays/s"),
     )
     with progress_bar("fit", job, columns) as on_step:
+
+        def after_step(progress: Progress) -> None:
+            if on_step is not None:
+                on_step(progress)
+            look(job)
+
         return job.run(
-            out, on_step=on_step, should_stop=stopping, checkpoint_seconds=checkpoint_seconds
+            out, on_step=after_step, should_stop=stopping, checkpoint_seconds=checkpoint_seconds
         )

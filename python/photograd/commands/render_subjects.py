@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 from photograd_course.cli import note
+from photograd_course.color import srgb_decode
 from photograd_course.metrics import round_to_8_bits
 
 from photograd._checks import typed
@@ -20,9 +23,12 @@ from photograd.errors import RangeError, message
 from photograd.fitting.drawing import Picture, draw_field, mean_depth
 from photograd.fitting.fog import Ramp, load_fog
 from photograd.fitting.model import Model, load_model
+from photograd.representation import Fittable
 from photograd.splats.files import GaussianFile, holds_gaussians, read_gaussians
 from photograd.splats.frames import UP_AXES, USUAL_UP, file_from_upright
+from photograd.splats.model import GaussianScene
 from photograd.splats.orbit import draw_splats, upright_box
+from photograd.splats.splatting import SplatOptions
 from photograd.types import Array, FloatArray
 
 AUTO = "auto"
@@ -47,13 +53,17 @@ class Subject:
         from_capture: camera of a capture, and the capture's (4, 4) world_from_source -> the camera
             in that frame.
         background: linear (3,) that was learned with a model, or None.
+        field: makes what is drawn, as a representation.
+        field_from_upright: (3, 3) rotation into the frame of that field.
     """
 
     box: Array
     draw: Callable[[Camera], Picture]
+    field: Callable[[], Fittable]
     capture: str | None = None
     from_capture: Callable[[Camera, FloatArray], Camera] = lambda camera, _: camera
     background: Array | None = None
+    field_from_upright: Array = dataclass_field(default_factory=lambda: np.eye(3))
 
 
 def check_up(up: str) -> None:
@@ -93,6 +103,7 @@ def _model(model: Model) -> Subject:
     return Subject(
         model.field.box,
         lambda camera: draw_field(model.field, model.background, camera),
+        lambda: model.field,
         str(captured) if captured else None,
         background=model.background,
     )
@@ -117,4 +128,12 @@ def _splats(found: GaussianFile, up: str) -> Subject:
         pose = upright_from_file @ invert_rigid(world_from_source) @ camera.world_from_camera
         return replace(camera, world_from_camera=pose)
 
-    return Subject(box, draw, None, from_capture)
+    @cache
+    def field() -> Fittable:
+        extent = max(float(np.linalg.norm(box[1] - box[0])), 1e-9)
+        policy = SplatOptions(antialiased=shown.antialiased is not False)
+        return GaussianScene(found.gaussians, extent=extent, policy=policy)
+
+    behind = None if shown.background is None else srgb_decode(np.array(shown.background))
+    turn = file_from_upright(shown.up or USUAL_UP)
+    return Subject(box, draw, field, None, from_capture, behind, turn)

@@ -9,18 +9,16 @@ from typing import Annotated
 import typer
 from photograd_course.cli import DebugOption, JsonOption, ThreadsOption, emit, note
 
-from photograd._checkpoint import FILE_NAME
 from photograd.capture import Capture, load_capture
 from photograd.commands.drawable import TRACED
 from photograd.commands.render_subjects import AUTO, UpOption, check_up
-from photograd.commands.shared import DepthOption, SppOption, stop_on_signals, use_threads
+from photograd.commands.shared import DepthOption, SppOption, is_given, stop_on_signals, use_threads
 from photograd.commands.view_drawing import Viewed, viewed_file, viewed_scene
-from photograd.commands.view_server import Page
+from photograd.commands.view_follow import FolderView, is_fit, viewed_folder
+from photograd.commands.view_server import LOOPBACK, Page, free_port
 from photograd.errors import Error
 from photograd.splats.files import is_gaussian_ply
 from photograd.transport.builtin import BUILTIN
-
-LOOPBACK = "127.0.0.1"
 
 
 def register(app: typer.Typer) -> None:
@@ -29,11 +27,13 @@ def register(app: typer.Typer) -> None:
 
 
 def view(
+    context: typer.Context,
     what: Annotated[
         str,
         typer.Argument(
-            help="Folder of a fit, or its model.npz; a volume; a file of Gaussians; the folder of "
-            "a capture; a scene or mesh file, or the name of a built-in scene.",
+            help="Folder of a fit, finished or running, or its model.npz; a volume; a file of "
+            "Gaussians; the folder of a capture; a scene or mesh file, or the name of a built-in "
+            "scene.",
             metavar="WHAT",
         ),
     ],
@@ -53,7 +53,10 @@ def view(
     port: Annotated[
         int,
         typer.Option(
-            "--port", min=1, max=65535, help="Port to listen at, or the next one that is free."
+            "--port",
+            min=1,
+            max=65535,
+            help="Port to listen at; without this option the first that is free from here on.",
         ),
     ] = 8080,
     size: Annotated[
@@ -70,8 +73,15 @@ def view(
 
     Pictures are rendered here, a quarter of the resolution while the camera moves, then all of it;
     scenes go on with more samples. There are layers for depth and opacity, a slider for the steps
-    of a fit, and frusta for photographs. It needs the package viser (the extra "viewer"), and no
-    network.
+    of a fit, and sliders for the materials and lights of a scene. A click on the picture tells
+    which voxel, Gaussian or triangle it shows, with its parameters.
+
+    Photographs are frusta. A click on one looks through it, and layers show it over, beside and
+    against the rendering. With photographs there is also the gradient of the loss against the
+    nearest one, as 'photograd gradients' draws it. The folder of a running fit is shown as it is
+    saved; 'photograd fit --view' shows it as it runs.
+
+    It needs the package viser (the extra "viewer"), and no network.
 
     Example: photograd view model
 
@@ -80,12 +90,16 @@ def view(
     use_threads(threads)
     check_up(up)
     viewed, photographs = _found(what, capture, up, spp, max_depth)
+    port = free_port(host, port, exact=is_given(context, "port"))
     page = Page(viewed, photographs, host=host, port=port, largest=size)
+    folder = FolderView(Path(what)) if is_fit(Path(what)) else None
     note(f"{page.address} shows {what}; Ctrl-C ends")
     try:
         with stop_on_signals() as stopping:
             while not stopping():
                 time.sleep(0.1)
+                if folder is not None:
+                    folder.look(page)
     finally:
         page.close()
     emit({"address": page.address}, as_json=as_json, title="view")
@@ -100,9 +114,10 @@ def _found(
     if what in BUILTIN or mesh or (what.lower().endswith(TRACED) and path.suffix.lower() != ".ply"):
         scene = viewed_scene(what, spp=spp, max_depth=max_depth)
         return scene, None if capture is None else _photographs(capture)
-    if path.is_dir() and not (path / FILE_NAME).exists():
+    fit = is_fit(path)
+    if path.is_dir() and not fit:
         return None, _photographs(path)
-    viewed = viewed_file(path, up)
+    viewed = viewed_folder(path) if fit else viewed_file(path, up)
     if capture is not None:
         return viewed, _photographs(capture)
     if viewed.capture is None or not Path(viewed.capture).exists():

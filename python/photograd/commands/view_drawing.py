@@ -7,7 +7,8 @@ be left for a newer camera, so that dragging never waits for a whole picture.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
 from pathlib import Path
 
 import numpy as np
@@ -37,26 +38,60 @@ Drawing = Callable[[Camera], Iterator[Picture | None]]
 
 
 @dataclass(frozen=True, eq=False)
+class Shown:
+    """What is drawn, differentiated and picked at one step of a fit.
+
+    Attributes:
+        draw: pictures of it, from coarse to fine.
+        field: makes the representation that is drawn; None of scenes.
+        background: linear (3,) behind it, or None.
+        field_from_page: (3, 3) rotation from the frame of the page to that of the field.
+    """
+
+    draw: Drawing
+    field: Callable[[], Fittable] | None = None
+    background: Array | None = None
+    field_from_page: FloatArray = dataclass_field(default_factory=lambda: np.eye(3))
+
+    def camera(self, camera: Camera) -> Camera:
+        """A camera of the page in the frame of the field.
+
+        Args:
+            camera: in the frame of the page.
+        """
+        pose = camera.world_from_camera.copy()
+        pose[:3] = self.field_from_page @ pose[:3]
+        return replace(camera, world_from_camera=pose)
+
+
+@dataclass(frozen=True, eq=False)
 class Viewed:
     """Something to be looked at from anywhere, in a frame with +Y up.
 
     Attributes:
         box: (2, 3) around it.
-        draw: pictures of it, from coarse to fine.
+        last: what is shown to begin with, the last step of a fit.
         layers: of `LAYERS`, what there is to see.
         capture: folder of the photographs that it was fitted to, if it says so.
         from_capture: as of `Subject`.
         start: a camera to begin with; None looks at the box from in front.
         steps: {step: the same after that step of its fit}.
+        tracer: of a scene, whose parameters sliders change; else None.
     """
 
     box: Array
-    draw: Drawing
+    last: Shown
     layers: tuple[str, ...] = LAYERS
     capture: str | None = None
     from_capture: Callable[[Camera, FloatArray], Camera] = lambda camera, _: camera
     start: Camera | None = None
-    steps: Mapping[int, Drawing] = field(default_factory=dict)
+    steps: Mapping[int, Shown] = dataclass_field(default_factory=dict)
+    tracer: PathTracer | None = None
+
+    @property
+    def draw(self) -> Drawing:
+        """Pictures of the last step."""
+        return self.last.draw
 
 
 def viewed_file(path: Path, up: str = AUTO) -> Viewed:
@@ -72,17 +107,25 @@ def viewed_file(path: Path, up: str = AUTO) -> Viewed:
     volume = {"ramp": "white", "sigma_t": None, "resolution": 128, "window": None}
     found = subject_of(path, up, volume)
     fields = load_snapshots(path) if path.is_dir() else {}
+    last = Shown(refined(found.draw), found.field, found.background, found.field_from_upright)
     return Viewed(
         found.box,
-        refined(found.draw),
+        last,
         capture=found.capture,
         from_capture=found.from_capture,
-        steps={step: _of_field(each, found.background) for step, each in fields.items()},
+        steps={step: shown_field(each, found.background) for step, each in fields.items()},
     )
 
 
-def _of_field(shown: Fittable, background: Array | None) -> Drawing:
-    return refined(lambda camera: draw_field(shown, background, camera))
+def shown_field(field: Fittable, background: Array | None) -> Shown:
+    """A field, to be drawn.
+
+    Args:
+        field: of a model, or of a step of its fit.
+        background: linear (3,) behind it, or None for white.
+    """
+    draw = refined(lambda camera: draw_field(field, background, camera))
+    return Shown(draw, lambda: field, background)
 
 
 def viewed_scene(name: str, *, spp: int, max_depth: int) -> Viewed:
@@ -97,12 +140,14 @@ def viewed_scene(name: str, *, spp: int, max_depth: int) -> Viewed:
         IoError, SceneError: what its reader raises.
     """
     scene, _ = load_scene(name, SCENE_SIZE)
+    tracer = PathTracer(scene, allow_incomplete=True)
     corners = np.concatenate([shape.box for shape in scene.shapes])
     return Viewed(
         np.stack([corners.min(axis=0), corners.max(axis=0)]),
-        traced(PathTracer(scene), spp=spp, options=PathOptions(max_depth=max_depth)),
+        Shown(traced(tracer, spp=spp, options=PathOptions(max_depth=max_depth))),
         ("color",),
         start=scene.camera,
+        tracer=tracer,
     )
 
 
@@ -160,7 +205,18 @@ def reduced(camera: Camera, factor: int) -> Camera:
         camera: of the whole picture.
         factor: at least 1.
     """
-    width, height = max(camera.width // factor, 1), max(camera.height // factor, 1)
+    size = max(camera.height // factor, 1), max(camera.width // factor, 1)
+    return resized(camera, size)
+
+
+def resized(camera: Camera, size: tuple[int, ...]) -> Camera:
+    """The camera with a picture of another size and the same edges.
+
+    Args:
+        camera: of a picture.
+        size: (height, width) in pixels.
+    """
+    height, width = size
     across, down = width / camera.width, height / camera.height
     return replace(
         camera,

@@ -18,7 +18,7 @@ from photograd_course.viz.scale import signed_scale
 
 from photograd._notebook import EDGE, png_of_sheet, sheet, signed_colors, smaller
 from photograd.capture.capture import Capture
-from photograd.fitting.data import TrainingViews, constant_background
+from photograd.fitting.data import TrainingView, TrainingViews, constant_background
 from photograd.fitting.evaluate import display_image
 from photograd.fitting.loss import picture_loss, picture_loss_backward
 from photograd.fitting.model import Model
@@ -84,12 +84,21 @@ def group_gradients(
     shown = Model(field, None, model.options, {}, model.history)
     view = TrainingViews(capture.train[:1]).views[0]
     picture = display_image(shown, view.camera)
-    outputs = Outputs(picture.reshape(-1, 3), np.ones(picture[..., 0].size))
-    d_outputs, _ = picture_loss_backward(
-        picture_loss(outputs, view, constant_background("white"), ssim_weight=0.0)
-    )
-    d_pixel = d_outputs.color.mean(axis=1).reshape(picture.shape[:2])
+    d_pixel, _ = pixel_gradient(picture, view)
     return GroupGradients(picture, d_pixel, rms, field.gradient_image(total), loss, total)
+
+
+def pixel_gradient(picture: Array, view: TrainingView) -> tuple[Array, float]:
+    """dL/d pixel (H, W), mean over the channels, of the absolute error of a picture; and the loss.
+
+    Args:
+        picture: (H, W, 3) display values, over white where the photograph has alpha.
+        view: the photograph.
+    """
+    outputs = Outputs(picture.reshape(-1, 3), np.ones(picture[..., 0].size))
+    loss = picture_loss(outputs, view, constant_background("white"), ssim_weight=0.0)
+    d_outputs, _ = picture_loss_backward(loss)
+    return d_outputs.color.mean(axis=1).reshape(picture.shape[:2]), loss.value
 
 
 def draw_group_gradients(rows: Mapping[int, GroupGradients]) -> Figure:

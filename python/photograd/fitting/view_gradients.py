@@ -80,11 +80,11 @@ def view_gradients(
     grad2d, total, loss = Grad2dStatistics.zero(scene.resolution), np.zeros(scene.resolution), 0.0
     chosen = views.views[:: max(1, -(-len(views) // MAX_VIEWS))]
     for view in chosen:
-        value, gradients, screen, visible, _ = _loss_and_grad(scene, view, ssim_weight)
+        value, gradients, screen, visible, _ = loss_and_grad(scene, view, ssim_weight)
         total += gradients["opacity_logits"]
         grad2d.add(screen, visible, view.camera)
         loss += value
-    _, _, screen, visible, picture = _loss_and_grad(scene, shown, ssim_weight)
+    _, _, screen, visible, picture = loss_and_grad(scene, shown, ssim_weight)
     pixels, _ = shown.camera.project(scene.params["means"].astype(np.float64))
     spread = screen_covariances(scene.gaussians, shown.camera)
     return ViewGradients(
@@ -99,14 +99,21 @@ def view_gradients(
     )
 
 
-def _loss_and_grad(
-    scene: GaussianScene, view: TrainingView, ssim_weight: float
+def loss_and_grad(
+    scene: GaussianScene, view: TrainingView, ssim_weight: float, background: Array = WHITE
 ) -> tuple[float, dict[str, Array], Array, NDArray[np.bool_], Array]:
-    """Loss, gradients, dL/d projected means, visibility and picture of one view over white."""
+    """Loss, gradients, dL/d projected means, visibility and picture of one view.
+
+    Args:
+        scene: Gaussians.
+        view: the photograph.
+        ssim_weight: share of 1 - SSIM in the loss.
+        background: (3,) display color.
+    """
     outputs, context = scene.render(
         ImageBatch(view.camera), seed=0, step=0, options=RenderOptions(stop=1e-4)
     )
-    loss = picture_loss(outputs, view, WHITE, ssim_weight=ssim_weight)
+    loss = picture_loss(outputs, view, background, ssim_weight=ssim_weight)
     gradients = scene.render_backward(context, picture_loss_backward(loss)[0])
     assert context.screen is not None
     return loss.value, gradients, context.screen, context.splats.visible, loss.image
