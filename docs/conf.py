@@ -31,7 +31,12 @@ exclude_patterns = ["README.md"]
 html_theme = "furo"
 html_title = "photograd"
 html_math_renderer = "mathml"  # of mathematics.py: needs no network
-html_static_path = ["../python/photograd_course/src/photograd_course/build/page/mathematics.woff2"]
+html_static_path = [
+    "../python/photograd_course/src/photograd_course/build/page/mathematics.woff2",
+    "_static",
+]
+html_css_files = ["book.css"]
+html_show_search_summary = False  # fetched page by page, which browsers refuse for files
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 smartquotes_action = "qe"  # -- stands before options

@@ -41,6 +41,23 @@ find_python() {
     return 1
 }
 
+# The versions of Python that pyproject.toml names, such as "3.11 3.12".
+python_versions() { sed -n 's/.*Python :: \(3\.[0-9]\{1,\}\)".*/\1/p' pyproject.toml; }
+
+# An interpreter of a version, with headers, from PATH or from pyenv; fails where there is none.
+interpreter() {
+    local candidate
+    for candidate in "python$1" "${PYENV_ROOT:-$HOME/.pyenv}/versions/$1".*/bin/"python$1"; do
+        if "$candidate" -c 'import ensurepip, pathlib, sys, sysconfig, venv
+assert "%d.%d" % sys.version_info[:2] == sys.argv[1]
+assert pathlib.Path(sysconfig.get_path("include"), "Python.h").exists()' "$1" 2>/dev/null; then
+            command -v "$candidate"
+            return
+        fi
+    done
+    return 1
+}
+
 # True when a header or library lies where compilers look.
 on_disk() {
     compgen -G "/usr/include/$1" || compgen -G "/usr/local/include/$1" ||
@@ -195,8 +212,10 @@ ensure_installed() {
 
 # The way for who may not install libraries: a wheel that carries them.
 ensure_wheel() {
-    local wheel key
-    wheel=$(compgen -G 'dist/photograd-*.whl' | head -n 1) && python_has venv || return 1
+    local wheel key tag
+    python_has venv || return 1
+    tag=$("$(find_python)" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+    wheel=$(compgen -G "dist/photograd-*-$tag-*.whl" | head -n 1) || return 1
     key=$(sha256sum dist/*.whl)
     mkdir -p build/log
     ensure_venv || return

@@ -72,7 +72,7 @@ if TYPE_CHECKING:
         recover,
     )
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "photograd._render": "render",

@@ -2657,7 +2657,7 @@ def write_vdb(
     half: bool | None,
 ) -> None: ...
 
-__version__: str = "0.1.0"
+__version__: str = "0.2.0"
 bsdfs: dict[str, typing.Any]
 delta_bsdfs: dict[str, typing.Any]
 fields: tuple[typing.Any, ...] = ("dense_grid", "tiny_network")
