@@ -5,9 +5,85 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
-from photograd_course.viz.handout import Array
+from matplotlib.axes import Axes
+from photograd_course.viz.handout import Array, note
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE
 
 UP = np.array([0.0, 1.0, 0.0])
+
+
+def room(module: ModuleType, width: int, height: int, depth: int, samples: int) -> Array:
+    """The image (height, width, 3) of `demo_room` by so many paths for each pixel."""
+    rays = module.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
+    total, rng = np.zeros((height * width, 3)), np.random.default_rng(4)
+    for _ in range(samples):
+        total += module.trace_paths(module.demo_room(), *rays, depth, rng)
+    return (total / samples).reshape(height, width, 3)
+
+
+def table_rays(module: ModuleType, width: int, height: int) -> tuple:
+    """The rays of `module.table_rays()`, for an image of other sizes."""
+    return module.camera_rays(width, height, [0, 0.9, 1.2], [0, 0, -0.3], 45)
+
+
+def table(module: ModuleType, scene: dict, size: tuple, rng: object, times: int = 1) -> Array:
+    """Direct light on the table, an image of `size` = (width, height), black beside the table."""
+    hit = module.closest_hit(scene, *table_rays(module, *size))
+    on, each = hit["primitive"] == 0, module.SIDE**2
+    many, seen = module.repeated(module.take(hit, on), each), np.zeros((len(on), 3))
+    for _ in range(times):
+        u = module.strata(rng, on.sum()), module.strata(rng, on.sum())
+        seen[on] += module.direct_light(scene, many, *u).reshape(-1, each, 3).mean(axis=1) / times
+    return seen.reshape(*size[::-1], 3)
+
+
+def table_derivatives(module: ModuleType, size: tuple, rng: object) -> tuple[Array, Array]:
+    """By pixel: its red with respect to red of the table, its mean with respect to roughness."""
+    scene, side = module.demo_table(), 7
+    hit = module.closest_hit(scene, *table_rays(module, *size))
+    found = np.zeros((2, len(hit["primitive"])))
+    for k in np.flatnonzero(hit["primitive"] == 0):
+        many = module.repeated(module.take(hit, [k]), side**2)
+        u = module.strata(rng, 1, side), module.strata(rng, 1, side)
+        d = np.full((side**2, 3), 1 / (3 * side**2))
+        by_color, by_rough = module.direct_light_backward(scene, many, *u, d)
+        found[:, k] = 3 * by_color[0, 0], by_rough[0]
+    return tuple(found.reshape(2, *size[::-1]))
+
+
+def draw_solid_angle(axes: Axes) -> None:
+    """A piece of a light, its normal, and the solid angle that it covers, seen from a point."""
+    start, end = np.array([0.2, 2.2]), np.array([2.2, 1.7])
+    along = (end - start) / np.linalg.norm(end - start)
+    piece = start + (end - start) * np.array([0.6, 0.78])[:, None]
+    middle = piece.mean(axis=0)
+    axes.plot([-0.9, 2.4], [0, 0], color=GRAY)
+    axes.plot(*np.stack([start, end]).T, color=ORANGE, linewidth=2)
+    axes.plot(*piece.T, color=INK, linewidth=4, solid_capstyle="butt")
+    axes.fill([0, *piece[:, 0]], [0, *piece[:, 1]], color=BLUE, alpha=0.15, linewidth=0)
+    axes.plot([0, middle[0]], [0, middle[1]], color=BLUE)
+    angle = np.arctan2(piece[:, 1], piece[:, 0])
+    arc = np.linspace(*angle, 20)
+    axes.plot(0.75 * np.cos(arc), 0.75 * np.sin(arc), color=BLUE, linewidth=2.5)
+    tip = middle + 0.75 * np.array([along[1], -along[0]])
+    axes.annotate("", tip, middle, arrowprops={"arrowstyle": "->", "color": INK})
+    back = -middle / np.linalg.norm(middle)
+    turn = np.linspace(np.arctan2(*(tip - middle)[::-1]), np.arctan2(*back[::-1]), 20)
+    axes.plot(middle[0] + 0.4 * np.cos(turn), middle[1] + 0.4 * np.sin(turn), color=INK, lw=0.8)
+    bisector = middle + 0.52 * np.array([np.cos(turn.mean()), np.sin(turn.mean())])
+    for text, place, color in (
+        ("light", (0.15, 2.32), ORANGE),
+        ("dA", (1.62, 2.05), INK),
+        ("r", (0.5, 1.05), BLUE),
+        ("dω", (0.72, 0.42), BLUE),
+        ("θ′", tuple(bisector - [0.1, 0.1]), INK),
+        ("normal", (tip[0] - 0.05, tip[1] - 0.22), INK),
+        ("x", (-0.08, -0.28), INK),
+    ):
+        note(axes, text, place, (0, 0), color=color)
+    axes.plot(0, 0, "o", color=INK, markersize=4)
+    axes.set(xlim=(-0.9, 2.5), ylim=(-0.4, 2.6), aspect="equal")
+    axes.set_axis_off()
 
 
 def irradiance(corners: Array) -> float:

@@ -9,13 +9,45 @@ import numpy as np
 from figure_parts import UP
 from matplotlib.figure import Figure
 from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
-from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 GAMMA = 1 / 2.2
 
 
-def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
+def fig1_result(module: ModuleType) -> tuple[Figure, Facts]:
+    """A room with all bounces and with direct light; a table, and what was recovered of it."""
+    full, direct = parts.room(module, 132, 110, 5, 40), parts.room(module, 96, 80, 2, 16)
+    target = module.core_answers()[0].reshape(70, 3)
+    start = module.demo_table((0.5, 0.5, 0.5), 0.6)
+    rng = np.random.default_rng(7)
+    color, rough, _ = module.recover(start, 0, *module.table_rays(), target, 45, rng)
+    tables = [
+        parts.table(module, scene, (60, 42), rng, 6)
+        for scene in (module.demo_table(), start, module.demo_table(color, rough))
+    ]
+    off = np.abs(np.append(color, rough) - (0.8, 0.5, 0.2, 0.35))
+    facts: Facts = {
+        "direct light leaves the ceiling black": Fact(direct[0, 32:64].mean(), 0.0, 1e-9),
+        "bounces light it": Fact(full[0, 44:88].mean(), 0.02, 1.0),
+        "the recovered table looks like the truth": Fact(
+            parts.apart(tables[2], tables[0]), 0.0, 0.1
+        ),
+        "and has its numbers within 0.02": Fact(off.max(), 0.0, 0.02),
+    }
+    figure = Figure(figsize=(7.0, 4.3), layout="constrained")
+    grid = figure.add_gridspec(2, 4, width_ratios=(1.45, 1.45, 1, 1), height_ratios=(1.45, 1))
+    places = (grid[:, :2], grid[0, 2:], grid[1, 2], grid[1, 3])
+    names = ("a room, by your path tracer", "direct light alone", "a table: first guess", "found")
+    for place, name, picture in zip(places, names, (full, direct, *tables[1:]), strict=True):
+        axes = figure.add_subplot(place)
+        top = 1.0 if picture is full or picture is direct else 2.0
+        axes.imshow(np.clip(picture / top, 0, 1) ** GAMMA, interpolation="nearest")
+        axes.set(xticks=[], yticks=[], title=name)
+    return figure, facts
+
+
+def fig2_measure(module: ModuleType) -> tuple[Figure, Facts]:
     """Irradiance below a light, by the density of the handout and by two wrong ones."""
     aside = np.linspace(0.0, 4.0, 33)
     light = module.rectangle([-0.5, 2, -0.5], [1, 0, 0], [0, 0, 1], emission=1.0)
@@ -42,22 +74,23 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         "without the cosine right below the light": Fact(no_cosine[0] / right[0], 1.0, 1.1),
         "at 4 m twice as bright or more": Fact(no_cosine[-1] / right[-1], 2.0, 3.0),
     }
-    figure, axes = subplots(7.0, 2.9)
+    figure, (sketch, axes) = subplots(7.0, 2.9, 1, 2, width_ratios=(1, 1.35))
+    parts.draw_solid_angle(sketch)
     axes.semilogy(aside, right, color=GRAY)
     axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
     axes.semilogy(aside, by_area, color=CRIMSON)
     axes.semilogy(aside, no_cosine, color=ORANGE)
-    note(axes, "density per area", (2.6, by_area[21]), (0, 5), color=CRIMSON)
-    note(axes, "without the cosine at the light", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
-    note(axes, "yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE)
+    note(axes, "density per area", (2.2, by_area[18]), (0, 5), color=CRIMSON)
+    note(axes, "without cos′", (2.6, no_cosine[21]), (0, 8), color=ORANGE)
+    note(axes, "yours, and Lambert's formula", (0.1, 0.03), (0, 0), color=BLUE)
     axes.set(xlabel="horizontal distance  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
     plain_axes(axes)
     return figure, facts
 
 
-def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
+def fig3_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     """Four strips of metal below a light, by three strategies; their noise."""
-    roughness, width, height, samples, shown_ones = (0.2, 0.3, 0.5, 0.8), 40, 28, 64, 4
+    roughness, width, height, samples, shown_ones = (0.2, 0.3, 0.5, 0.8), 84, 58, 16, 4
     strips = [
         module.rectangle(
             [-1 + 0.5 * k, 0, -1],
@@ -104,7 +137,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
         "smooth: the mean of BSDF sampling": Fact(means[2, 0] / means[1, 0], 0.8, 1.25),
         "rough: the mean of light sampling": Fact(means[2, 3] / means[0, 3], 0.8, 1.25),
     }
-    figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.3, 1))
+    figure, axes = subplots(7.0, 3.6, 2, 3, height_ratios=(1.5, 1))
     for column, (name, p) in enumerate(
         zip(("light sampling", "BSDF sampling", "both (MIS)"), pictures, strict=True)
     ):
@@ -118,7 +151,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
             low = np.flatnonzero(on)[strip == k].max() // width
             row = np.flatnonzero(on)[strip == k]
             middle = np.median(row[row // width == low] % width)
-            axes[0, column].text(middle, low - 1, str(each), color="white", ha="center", fontsize=7)
+            axes[0, column].text(middle, low - 2, str(each), color="white", ha="center", fontsize=7)
         axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
         axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
         axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
@@ -126,58 +159,13 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
-    """A room at three depths; a furnace room by depth."""
-    scene = module.demo_room()
-    width, height, samples = 36, 30, 9
-    rays = module.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
-    rng = np.random.default_rng(4)
-    pictures = []
-    for depth in (1, 2, 5):
-        many = [np.repeat(each, 1 if depth == 1 else samples, axis=0) for each in rays]
-        seen = module.trace_paths(scene, *many, depth, rng)
-        pictures.append(seen.reshape(height * width, -1, 3).mean(axis=1))
-    albedo, depths = 0.6, np.arange(1, 8)
-    room, origins, directions = parts.furnace(module, albedo, 700, rng)
-    means, errors, double = [], [], []
-    for depth in depths:
-        seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
-        means.append(seen.mean())
-        errors.append(seen.std() / np.sqrt(len(seen)))
-        powers = albedo ** np.arange(depth)
-        double.append(powers.sum() + powers[1:-1].sum())
-    right = (1 - albedo**depths) / (1 - albedo)
-    off = np.abs(np.array(means) - right) / np.maximum(errors, 1e-3)
-    ceiling = [float(each.reshape(height, width, 3)[0, 12:24].mean()) for each in pictures[1:]]
-    facts: Facts = {
-        "depth 1 is the light alone": Fact((pictures[0].sum(axis=1) > 0).mean(), 0.003, 0.1),
-        "direct light leaves the ceiling black": Fact(ceiling[0], 0.0, 1e-9),
-        "bounces light it": Fact(ceiling[1], 0.02, 1.0),
-        "dots on the line": Fact(off.max(), 0.0, 4.5),
-        "counted twice: too bright from depth 3 on": Fact(
-            abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]
-        ),
-    }
-    figure, axes = subplots(7.0, 2.3, 1, 4, width_ratios=(1, 1, 1, 1.4))
-    for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
-        shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
-        axes[k].imshow(shown)
-        axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
-    axes[3].plot(depths, right, color=GRAY)
-    axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
-    axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
-    axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
-    plain_axes(axes[3])
-    return figure, facts
-
-
-def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
-    """Mean, vertices per path and cost, with roulette and without."""
-    albedo, depths = 0.4, np.array([2, 4, 8, 12])
+def fig4_furnace(module: ModuleType) -> tuple[Figure, Facts]:
+    """A furnace room by depth: mean, vertices per path and cost, with roulette and without."""
+    albedo, depths = 0.4, np.array([2, 3, 5, 8, 12])
     rng = np.random.default_rng(5)
     room, origins, directions = parts.furnace(module, albedo, 2500, rng)
     closest_hit, always = module.closest_hit, module.ALWAYS
-    means, visits, prices = [], [], []
+    found = []
     for limit in (always, 99):
         counted = [0]
 
@@ -193,34 +181,37 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
             module.ALWAYS, module.closest_hit = always, closest_hit
             # Three rays start at each vertex: two for direct light, one to continue.
             visited = counted[0] / len(origins) / 3
-            rows.append(
-                (seen.mean(), seen.std() / np.sqrt(len(seen)), visited, seen.var() * visited)
-            )
-        mean, error, visited, price = np.array(rows).T
-        means.append((mean, error))
-        visits.append(visited)
-        prices.append(price)
+            rows.append((seen.mean(), seen.std() / np.sqrt(len(seen)), visited, seen.var()))
+        found.append(np.array(rows).T)
     right = (1 - albedo**depths) / (1 - albedo)
-    off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e in means)
+    # The light of depths 2, 3, ... once more, where each vertex but the last adds its emission.
+    double = right + (1 - albedo ** (depths - 1)) / (1 - albedo) - 1
+    off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e, *_ in found)
+    prices = [variance * visited for _, _, visited, variance in found]
     facts: Facts = {
         "the means agree with the series": Fact(off, 0.0, 4.5),
-        "with roulette below 4 vertices": Fact(visits[0][-1], 2.0, 4.0),
-        "without it as many as the depth allows": Fact(visits[1][-1], 10.0, 13.0),
-        "more expensive at depth 8": Fact((prices[0] / prices[1])[2], 1.1, 2.0),
-        "about even at depth 12": Fact((prices[0] / prices[1])[3], 0.7, 1.4),
+        "counted twice: right at depth 2, too bright from 3 on": Fact(
+            abs(double[0] - right[0]) < 1e-9 and double[1] > 1.2 * right[1]
+        ),
+        "with roulette below 4 vertices": Fact(found[0][2][-1], 2.0, 4.0),
+        "without it as many as the depth allows": Fact(found[1][2][-1], 10.0, 13.0),
+        "more expensive at depth 8": Fact((prices[0] / prices[1])[3], 1.1, 2.0),
+        "about even at depth 12": Fact((prices[0] / prices[1])[4], 0.7, 1.4),
     }
-    figure, axes = subplots(7.0, 2.4, 1, 3)
-    for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
-        shift = 0.12 * (2 * k - 1)
-        axes[0].errorbar(
-            depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
-        )
-        axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
-        axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
+    figure, axes = subplots(7.0, 2.6, 1, 3, width_ratios=(1.3, 1, 1))
     axes[0].plot(depths, right, color=GRAY, zorder=0)
+    axes[0].plot(depths, double, "x", color=CRIMSON, markersize=5)
+    note(axes[0], "emission added\nat every hit", (5, double[2]), (6, -18), color=CRIMSON)
+    for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
+        mean, error, visited, _ = found[k]
+        style = {"color": color, "marker": "os"[k], "markersize": 4}
+        axes[0].errorbar(depths + 0.3 * k - 0.15, mean, 3 * error, linestyle="", **style)
+        axes[1].plot(depths, visited, label=name, **style)
+        axes[2].plot(depths, prices[k], **style)
     axes[1].legend(frameon=False)
-    for each, title in zip(axes, ("mean", "vertices per path", "variance × vertices"), strict=True):
-        each.set(xlabel="depth", title=title)
+    titles = ("mean radiance", "vertices per path", "variance × vertices")
+    for each, title in zip(axes, titles, strict=True):
+        each.set(xlabel="depth", title=title, xticks=depths)
         plain_axes(each)
     return figure, facts
 
@@ -280,48 +271,42 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
-    """The table by the submission and by the core; a fit."""
+    """The table and two derivatives of its pixels; a fit, and that of the core."""
     truth, rays = module.demo_table(), module.table_rays()
     picture, slope, core = module.core_answers()
     rng = np.random.default_rng(7)
-    hit = module.closest_hit(truth, *rays)
-    on = hit["primitive"] == 0
-    pixels, each = int(on.sum()), module.SIDE**2
-    many = module.repeated(module.take(hit, on), each)
-    seen = np.zeros((70, 3))
-    for _ in range(4):
-        u = module.strata(rng, pixels), module.strata(rng, pixels)
-        seen[on] += module.direct_light(truth, many, *u).reshape(pixels, each, 3).mean(axis=1) / 4
     mine = module.by_roughness(truth, 0, *rays, rng).reshape(7, 10)
+    seen = parts.table(module, truth, (10, 7), rng, 4)
     start = module.demo_table((0.5, 0.5, 0.5), 0.6)
     color, rough, track = module.recover(start, 0, *rays, picture.reshape(70, 3), 45, rng)
-    exact = np.array([0.8, 0.5, 0.2, 0.35])
-    found = np.append(color, rough)
+    exact, found = np.array([0.8, 0.5, 0.2, 0.35]), np.append(color, rough)
+    shown = parts.table(module, truth, (60, 42), rng)
+    by_red, by_rough = parts.table_derivatives(module, (60, 42), rng)
     facts: Facts = {
-        "your image is the core's": Fact(parts.apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your image is the core's": Fact(parts.apart(seen, picture), 0.0, 0.1),
         "your gradient is the core's": Fact(parts.apart(mine, slope), 0.0, 0.35),
+        "wider highlights are dimmer in the middle": Fact(by_rough[21:30, 20:40].min(), -20, -1),
+        "more red is brighter everywhere": Fact(by_red.min(), 0.0, 20.0),
         "base color found within 0.02": Fact(np.abs(found - exact)[:3].max(), 0.0, 0.02),
         "roughness found within 0.02": Fact(abs(found - exact)[3], 0.0, 0.02),
         "the core as well": Fact(np.abs(core - exact).max(), 0.0, 0.02),
     }
-    figure = Figure(figsize=(7.0, 4.0), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
-    axes = above.subplots(1, 4)
-    for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
-        each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
-    for each, shown in zip(axes[2:], (mine, slope), strict=True):
-        each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
-    for each, name in zip(
-        axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
-    ):
+    figure = Figure(figsize=(7.0, 4.2), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=(1, 1))
+    axes = above.subplots(1, 3)
+    axes[0].imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
+    for each, values in zip(axes[1:], (by_red, by_rough), strict=True):
+        top = np.quantile(np.abs(values), 0.98)
+        each.imshow(values, cmap=signed_color_map(), vmin=-top, vmax=top)
+    names = ("your image", "∂ red / ∂ red of the table", "∂ / ∂ roughness")
+    for each, name in zip(axes, names, strict=True):
         each.set(xticks=[], yticks=[], title=name)
     axis = below.subplots()
     for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
         axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
         axis.plot(np.arange(1, 46), track[:, k], color=color)
         axis.plot([46], [core[k]], "x", color=color)
-    for k, name in enumerate(("red", "green", "blue", "roughness")):
-        note(axis, name, (24, track[24, k]), (3, 4))
+        note(axis, ("red", "green", "blue", "roughness")[k], (24, track[24, k]), (3, 4))
     axis.set(xlabel="step", ylim=(0, 1))
     plain_axes(axis)
     return figure, facts
@@ -331,13 +316,13 @@ _SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
 
 FIGURES = figures_of(
-    fig1_measure, fig2_strategies, fig3_depth, fig4_roulette, fig5_gradient, fig6_recover
+    fig1_result, fig2_measure, fig3_strategies, fig4_furnace, fig5_gradient, fig6_recover
 )
 RED = {
-    "fig1_measure": "pdf_no_cosine",
-    "fig2_strategies": "direct_weights_exchanged",
-    "fig3_depth": "trace_double_emission",
-    "fig4_roulette": "roulette_no_division",
+    "fig1_result": "back_sign",
+    "fig2_measure": "pdf_no_cosine",
+    "fig3_strategies": "direct_weights_exchanged",
+    "fig4_furnace": "roulette_no_division",
     "fig5_gradient": "back_density_too",
     "fig6_recover": "back_sign",
 }

@@ -7,7 +7,6 @@
 # origin, `--voxels` its resolution, and `--views` the number of images to use.
 
 # %%
-import importlib
 import time
 from pathlib import Path
 
@@ -15,7 +14,8 @@ import numpy as np
 import volume_rendering as mine
 from matplotlib.figure import Figure
 from photograd_course.captures import read_capture
-from photograd_course.explore import option
+from photograd_course.core_volume import core_volume
+from photograd_course.explore import by_the_core, option
 
 steps = max(1, int(option("steps", 48)))
 thick = float(option("thick", 1))
@@ -118,35 +118,16 @@ for length in (1, 10, 100):
 # %%
 def of_the_core():
     """(its derivative, seconds of its two passes)."""
-    grids = importlib.import_module("photograd.fields.dense_grid")
-    marches = importlib.import_module("photograd.fields.march")
-    base = importlib.import_module("photograd.representation")
-    policy = marches.MarchPolicy(
-        box=(tuple(low), tuple(high)),
-        dt=2 / steps * (1 - 1e-12),
-        lattice="entry",
-        density_activation="identity",
-        color_activation="identity",
-    )
-    field = grids.DenseGrid(guess.copy(), policy)
-    batch = base.RayBatch(eyes, looks, np.arange(len(eyes), dtype=np.uint32))
+    _, adjoint = core_volume()
     started = time.perf_counter()
-    _, context = field.render(batch, options=base.RenderOptions(), seed=0, step=0)
-    # The core excludes the background: pixel = color + (1 - opacity) background.
-    back = base.Outputs(d_picture, -(d_picture @ backdrop), None)
-    gradient = field.render_backward(context, back)["values"]
-    return np.asarray(gradient), time.perf_counter() - started
+    return adjoint(guess, *rays, d_picture)[0], time.perf_counter() - started
 
 
-core_slope = None
-try:
-    core_slope, core_seconds = of_the_core()
-except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
-    print("core not installed")
-else:
-    gap = np.linalg.norm(core_slope - d_guess) / np.linalg.norm(core_slope)
+core = by_the_core(of_the_core)
+if core is not None:
+    gap = np.linalg.norm(core[0] - d_guess) / np.linalg.norm(core[0])
     print(
-        f"core:   both passes in {core_seconds:.4f} s, {(forward + backward) / core_seconds:.0f} "
+        f"core:   both passes in {core[1]:.4f} s, {(forward + backward) / core[1]:.0f} "
         f"times as fast; its derivative is {gap:.1e} from yours"
     )
 
@@ -165,17 +146,14 @@ def shown(axes, values, title):
 
 
 figure = Figure(figsize=(14, 4), layout="constrained")
-panels = figure.subplots(1, 4)
+panels = figure.subplots(1, 3 if core is None else 4)
 shown(panels[0], photograph, "photograph")
 shown(panels[1], picture, "guess")
 end = max(np.abs(d_guess[..., 3].sum(axis=2)).max(), 1e-300)
 signed(panels[2], d_guess[..., 3], end, "your ∂L/∂σ")
 panels[2].set_xlabel("blue: add, red: remove")
-if core_slope is None:
-    panels[3].text(0.5, 0.5, "core not installed", ha="center")
-    panels[3].set_axis_off()
-else:
-    signed(panels[3], core_slope[..., 3], end, "the core's, on the same scale")
+if core is not None:
+    signed(panels[3], core[0][..., 3], end, "the core's, on the same scale")
 figure.savefig("volume.png", dpi=100)
 print("ray.png, volume.png: look at them")
 

@@ -7,8 +7,8 @@ from types import ModuleType
 import numpy as np
 from photograd_course.viz.handout import Array
 
-STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
-# The mistakes of figure 4, as its caption names them.
+STEPS = 48  # along the ray of figures 2 and 4, which is 6 m long
+# The mistakes of figure 5, as its caption names them.
 LEFT_OUT, ADDED, NO_STEP = "no occlusion term", "occlusion term added", "without dt"
 OWN_LIGHT, NO_EXP = "own light in occlusion", "σ dt for opacity"
 TAKES_IN = "T includes the step"
@@ -92,20 +92,30 @@ def wrong(
     return (own - hidden) * (1.0 if name == NO_STEP else dt)
 
 
-def ball_and_ring(shape: tuple[int, int, int]) -> tuple[Array, Array, list[Array]]:
-    """(truth, guess, masks): a ball and a ring; the guess has a second ball and no ring."""
-    axes = [(np.arange(n) + 0.5) / n * 2 - 1 for n in shape]
-    x, y, z = np.meshgrid(*axes, indexing="ij")
-    ball = (x + 0.15) ** 2 + (y + 0.1) ** 2 + z**2 < 0.3**2
-    ring = (np.hypot(x + 0.15, y + 0.1) - 0.6) ** 2 + z**2 < 0.13**2
-    other = (x - 0.72) ** 2 + (y - 0.7) ** 2 + z**2 < 0.2**2
-    truth, guess = np.zeros((*shape, 4)), np.zeros((*shape, 4))
-    for volume in (truth, guess):
-        volume[..., :3] = (0.9, 0.75, 0.45)
-        volume[ball, 3] = 8.0
-    truth[ring, 3] = 6.0
-    guess[other, 3] = 6.0
-    return truth, guess, [ball, ring, other]
+def planet(n: int) -> tuple[Array, Array, list[Array]]:
+    """(truth, guess, masks): a planet with a ring; the guess has a moon and no ring."""
+    axis = (np.arange(n) + 0.5) / n * 2 - 1
+    place = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    pole = np.array([0.32, 0.86, 0.4]) / np.linalg.norm([0.32, 0.86, 0.4])
+    light = np.array([-0.6, 0.5, 0.62])
+    height = place @ pole
+    around = np.sqrt(np.maximum(np.sum(place**2, axis=-1) - height**2, 0))
+    ball = np.sum(place**2, axis=-1) < 0.46**2
+    ring = (np.abs(around - 0.76) < 0.17) & (np.abs(height) < 1.5 / n) & ~ball
+    aside = np.linalg.norm(place - [0.7, -0.72, 0.0], axis=-1)
+    truth = np.zeros((n, n, n, 4))
+    bands = 0.5 + 0.5 * np.sin(22 * height + 1.5 * np.sin(5 * height))
+    lit = 0.12 + 0.88 * np.clip(place @ light / 0.46, 0, 1)
+    paint = np.array([0.95, 0.75, 0.45]) + bands[..., None] * [-0.3, -0.38, -0.28]
+    grooves = 0.8 + 0.2 * np.cos(37 * (around - 0.76))
+    truth[..., :3] = grooves[..., None] * [0.8, 0.72, 0.6]
+    inner = np.sum(place**2, axis=-1) < 0.52**2
+    truth[inner, :3] = (lit[..., None] * paint)[inner]
+    truth[aside < 0.25, :3] = (0.35, 0.5, 0.7)
+    truth[ball, 3] = 30.0
+    guess = truth.copy()
+    truth[ring, 3], guess[aside < 0.18, 3] = 20.0, 8.0
+    return truth, guess, [ball, ring, aside < 0.18]
 
 
 def grown(mask: Array) -> Array:

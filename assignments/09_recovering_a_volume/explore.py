@@ -7,15 +7,15 @@
 # extent of the box from the origin.
 
 # %%
-import importlib
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_recovery as mine
 from matplotlib.figure import Figure
-from photograd_course.captures import all_around, look_at_origin, read_capture
-from photograd_course.explore import option
+from photograd_course.captures import all_around, look_at_origin, read_capture, two_striped_balls
+from photograd_course.core_volume import core_volume
+from photograd_course.explore import by_the_core, option
 
 count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
 steps, capture = option("steps", 60), option("capture", "")
@@ -27,24 +27,6 @@ mine.TV = option("tv", mine.TV)
 
 
 # %%
-def scene(n):
-    """A volume of n x n x n voxels."""
-    places = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    grid = np.full((n, n, n, 4), 0.5)
-    grid[..., 3] = 0.0
-    for middle, size, paint in (
-        ((-0.25, 0.0, 0.1), 0.45, (0.95, 0.55, 0.4)),
-        ((0.4, 0.25, -0.25), 0.3, (0.5, 0.75, 0.95)),
-    ):
-        away = np.linalg.norm(places - np.array(middle), axis=-1)
-        solid = np.clip((size - away) * n / 3 + 0.5, 0, 1)
-        own = solid > grid[..., 3] / 10
-        stripes = 0.75 + 0.25 * np.sin(places[own] @ np.array([6.0, 8.0, 3.0]))
-        grid[own, :3] = stripes[:, None] * paint
-        grid[..., 3] = np.maximum(grid[..., 3], 10 * solid)
-    return grid
-
-
 def photographs(grid, number, size, turn=0.0):
     """Views of a volume by your own renderer."""
     places = 3.2 * all_around(number, turn, up=1)
@@ -92,7 +74,7 @@ def recover(views, n, number):
     return grid, losses, time.perf_counter() - before
 
 
-truth = scene(24)
+truth = two_striped_balls(24)
 views, unseen = photographs(truth, count, pixels), photographs(truth, 4, pixels, 1.0)
 fog = mine.fog((voxels,) * 3)
 print(f"scene:  {count} photographs of {pixels} x {pixels}, a volume of {voxels}^3")
@@ -122,42 +104,6 @@ print(
 
 
 # %%
-def of_the_core():
-    """(render_rays, render_adjoint) by the core."""
-    grids = importlib.import_module("photograd.fields.dense_grid")
-    marches = importlib.import_module("photograd.fields.march")
-    base = importlib.import_module("photograd.representation")
-
-    def asked(grid, low, high, origins, directions, n):
-        policy = marches.MarchPolicy(
-            box=(tuple(low), tuple(high)),
-            dt=float(np.max(high - low)) / n,
-            lattice="entry",
-            density_activation="identity",
-            color_activation="identity",
-        )
-        aims = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-        numbers = np.arange(len(origins), dtype=np.uint32)
-        batch = base.RayBatch(np.ascontiguousarray(origins), aims, numbers)
-        field = grids.DenseGrid(grid.copy(), policy)
-        return field, *field.render(batch, options=base.RenderOptions(), seed=0, step=0), base
-
-    def render(grid, low, high, origins, directions, n, background):
-        _, out, _, _ = asked(grid, low, high, origins, directions, n)
-        opacity = np.asarray(out.opacity).reshape(-1, 1)
-        return np.asarray(out.color) + (1 - opacity) * background
-
-    def adjoint(grid, low, high, origins, directions, n, background, d_pixel):
-        field, out, context, base = asked(grid, low, high, origins, directions, n)
-        back = base.Outputs(d_pixel, -(d_pixel @ background), None)
-        d_grid = np.asarray(field.render_backward(context, back)["values"])
-        opacity = np.asarray(out.opacity).reshape(-1, 1)
-        return d_grid.reshape(grid.shape), np.sum((1 - opacity) * d_pixel, axis=0)
-
-    render(fog, views["low"], views["high"], np.zeros((1, 3)), np.ones((1, 3)), 4, np.zeros(3))
-    return render, adjoint
-
-
 FINE = 160
 
 
@@ -169,12 +115,8 @@ def finely(grid, views):
     return slope
 
 
-core = None
-try:
-    functions = of_the_core()
-except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
-    print("core not installed")
-else:
+core, functions = None, by_the_core(core_volume)
+if functions is not None:
     kept = mine.render_rays, mine.render_adjoint
     mine.render_rays, mine.render_adjoint = functions
     core_slope = gradient(fog, views)[..., 3]
@@ -209,27 +151,24 @@ def light(axes, picture, title):
     axes.set(title=title, xticks=[], yticks=[])
 
 
-def absent(axes):
-    axes.text(0.5, 0.5, "core not installed", ha="center")
-    axes.set_axis_off()
-
-
-figure = Figure(figsize=(13, 6.5), layout="constrained")
-panels = figure.subplots(2, 4)
 large = photographs(truth, 4, 48, 1.0)
-light(panels[0, 0], large["pictures"][1], "a new view: the truth")
-light(panels[0, 1], shown(found, large)[1], "your fit")
-if core is None:
-    absent(panels[0, 2])
-    absent(panels[1, 1])
-else:
-    light(panels[0, 2], shown(core, large)[1], "with the core's renderer")
-    signed(panels[1, 1], core_slope, "the core's")
-panels[0, 3].semilogy(np.maximum(losses, 1e-12))
-panels[0, 3].set(title="your losses", xlabel="step")
-signed(panels[1, 0], slope, "your derivative by σ, from fog")
-signed(panels[1, 2], signs, "your sign map, from fog")
-signed(panels[1, 3], gradient(found, views)[..., 3], "your derivative after the fit")
+above = [(large["pictures"][1], "a held-out view"), (shown(found, large)[1], "your fit")]
+below = [
+    (slope, "your ∂L/∂σ, from fog"),
+    (signs, "your sign map, from fog"),
+    (gradient(found, views)[..., 3], "your ∂L/∂σ after the fit"),
+]
+if core is not None:
+    above.append((shown(core, large)[1], "the core's fit"))
+    below.append((core_slope, "the core's ∂L/∂σ, from fog"))
+figure = Figure(figsize=(13, 6.5), layout="constrained")
+panels = figure.subplots(2, len(below))
+for axes, (picture, title) in zip(panels[0], above, strict=False):
+    light(axes, picture, title)
+for axes, (values, title) in zip(panels[1], below, strict=True):
+    signed(axes, values, title)
+panels[0, -1].semilogy(np.maximum(losses, 1e-12))
+panels[0, -1].set(title="your losses", xlabel="step")
 figure.savefig("recovery.png", dpi=100)
 print("recovery.png: a held-out view, your derivative, the recovered volume")
 

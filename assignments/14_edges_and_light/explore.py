@@ -16,7 +16,7 @@ from pathlib import Path
 import edges_and_light as mine
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 own = Path(mine.__file__).read_text(encoding="utf-8")
 letters = option("letters", mine.initials_of(own)).upper()
@@ -52,13 +52,10 @@ print(f"stroke:     width {width:.4f}, it is 2.2")
 # ## The core's exact derivative, where it is installed
 
 # %%
-try:
-    core = importlib.import_module("photograd.raster.coverage")
-    d_image = np.random.default_rng(1).uniform(-1, 1, (28, 28))
-    exact = core.polygon_coverage_backward(start, d_image)
-except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
-    print("core:       not installed; edge sampling is not compared")
-else:
+d_image = np.random.default_rng(1).uniform(-1, 1, (28, 28))
+name = "photograd.raster.coverage"
+exact = by_the_core(lambda: importlib.import_module(name).polygon_coverage_backward(start, d_image))
+if exact is not None:
     u = (np.arange(100 * samples) + 0.5) / (100 * samples)
     got = mine.edge_sampling_backward(start, mine._white, mine._black, d_image[..., None], u)
     off = np.linalg.norm(got - exact) / np.linalg.norm(exact)

@@ -17,7 +17,7 @@ def played(t, beta, u):
 @check(
     "07.4.values",
     points=2,
-    hint="equations (11) and (12): the largest channel decides, u < q continues",
+    hint="equations (11) and (12): the largest channel decides, u < s continues",
     sole="one path that continues and one that ends",
 )
 def known_ends(t):
@@ -25,18 +25,18 @@ def known_ends(t):
     u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0, 0.5]
     beta, alive = played(t, [[0.2, 0.5, 0.1]] * 4, u)
     right = [True, False, True, False]
-    t.require(alive.tolist() == right, f"alive is {alive.tolist()} for u = {u}, q = 0.5")
+    t.require(alive.tolist() == right, f"alive is {alive.tolist()} for u = {u}, s = 0.5")
     t.close("beta", beta, np.outer(right, [0.4, 1, 0.2]), reveal=True)
-    q = np.array([0.1, 0.001])
-    beta, alive = played(t, np.outer(q, [0.4, 1, 0.2]), t.rng.uniform(0.1, 0.9) * q)
-    t.require(bool(alive.all()), "a path with u < q has ended: q is 0.1 or 0.001")
+    s = np.array([0.1, 0.001])
+    beta, alive = played(t, np.outer(s, [0.4, 1, 0.2]), t.rng.uniform(0.1, 0.9) * s)
+    t.require(bool(alive.all()), "a path with u < s has ended: s is 0.1 or 0.001")
     t.close(
         "beta of paths with small throughput",
         beta,
         np.tile([0.4, 1, 0.2], (2, 1)),
         reveal=True,
         hint=(
-            "1 / q is 10 and 1000 here and must not be limited: it compensates for all ended paths"
+            "1 / s is 10 and 1000 here and must not be limited: it compensates for all ended paths"
         ),
     )
 
@@ -44,7 +44,7 @@ def known_ends(t):
 @check(
     "07.4.mean",
     points=3,
-    hint="a surviving path is multiplied by 1 / q, which compensates for the others",
+    hint="a surviving path is multiplied by 1 / s, which compensates for the others",
     sole="roulette must not change the mean",
 )
 def the_mean_is_kept(t):
@@ -59,7 +59,7 @@ def the_mean_is_kept(t):
 @check(
     "07.4.ends",
     points=2,
-    hint="q is at most 1; and where q is 0 do not divide by it",
+    hint="s is at most 1; and where s is 0 do not divide by it",
     sole="large throughput is unchanged, and zero ends",
 )
 def bright_and_dark_paths(t):

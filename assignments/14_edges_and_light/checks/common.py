@@ -146,6 +146,26 @@ def replayed(t, scene, rays, depth, seed, d_radiance):
     return {"base_color": got[0], "roughness": got[1]}
 
 
+def agrees_with_differences(t, got, scene, forward, d):
+    """Require that d_base_color and d_roughness are finite differences of <forward(scene), d>.
+
+    The values of `forward`, an array (..., 3), are channel by channel functions of base_color, so
+    one difference moves all three channels of a primitive.
+    """
+    for name in ("base_color", "roughness"):
+        expected = np.zeros(scene[name].shape)
+        for k in range(len(expected)):
+            ends = []
+            for sign in (1, -1):
+                moved = {**scene, name: scene[name].copy()}
+                moved[name][k] += 1e-5 * sign
+                ends.append(np.sum((forward(moved) * d).reshape(-1, 3), axis=0))
+            change = (ends[0] - ends[1]) / 2e-5
+            expected[k] = change if name == "base_color" else change.sum()
+        t.require(bool(expected.any()), f"d_{name}: the differences are all zero")
+        t.close(f"d_{name}", got[name], expected)
+
+
 def p_value(values, right):
     """p-value of independent numbers (n,) with the expected mean `right`, by Student's t."""
     n = len(values)

@@ -22,7 +22,7 @@ def away_from_kinks(t, n):
     "14.1.values",
     points=2,
     tolerance=EXACT,
-    hint="an upright edge covers offset + 1/2, from 0 to 1; its length in the pixel is 1",
+    hint="section 1: upright and level edges first, then those that cut off a corner",
     sole="numbers that can be worked out by hand",
 )
 def known_edges(t):
@@ -30,20 +30,27 @@ def known_edges(t):
     s = float(t.rng.uniform(0.1, 0.4))
     angle = np.array([0, 0, np.pi / 2, np.pi, -np.pi / 2])
     got = covered(t, angle, np.array([s, -s, s, s, -s]))
-    t.close("area", got["area"], 0.5 + s * np.array([1, -1, 1, 1, -1]), reveal=True)
-    t.close("d_offset", got["d_offset"], np.ones(5), reveal=True)
+    upright = "an upright or level edge covers offset + 1/2, and its length in the pixel is 1"
+    area = 0.5 + s * np.array([1, -1, 1, 1, -1])
+    t.close("area", got["area"], area, reveal=True, hint=upright)
+    t.close("d_offset", got["d_offset"], np.ones(5), reveal=True, hint=upright)
     t.require(
         bool(np.abs(got["d_angle"]).max() < 1e-12),
         "an upright or level edge turns about its middle: d_angle is 0",
     )
     got = covered(t, np.array([np.pi / 4, -3 * np.pi / 4]), np.array([s, s]))
     rest = np.sqrt(0.5) - s
-    t.close("area at 45 degrees", got["area"], np.full(2, 1 - rest**2), reveal=True)
-    t.close("d_offset at 45 degrees", got["d_offset"], np.full(2, 2 * rest), reveal=True)
+    cut = "at 45 degrees the edge cuts off a corner, a right triangle; its hypotenuse is the edge"
+    area = np.full(2, 1 - rest**2)
+    t.close("area at 45 degrees", got["area"], area, reveal=True, hint=cut)
+    t.close("d_offset at 45 degrees", got["d_offset"], np.full(2, 2 * rest), reveal=True, hint=cut)
     got = covered(t, np.array([0.0, 0, 1, 1, 2]), np.array([0.51, -0.6, 0.7, -2, 30]))
-    t.close("area of edges beside the pixel", got["area"], np.array([1.0, 0, 1, 0, 1]))
+    beside = "an edge beyond the last corner misses the pixel: it covers all of it or nothing"
+    area = np.array([1.0, 0, 1, 0, 1])
+    t.close("area of edges beside the pixel", got["area"], area, hint=beside)
     for name in ("d_offset", "d_angle"):
-        t.require(not got[name].any(), f"{name} of edges beside the pixel must be 0")
+        what = f"{name} of edges beside the pixel must be 0"
+        t.require(not got[name].any(), what, hint=beside)
 
 
 @check(

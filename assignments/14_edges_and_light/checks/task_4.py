@@ -3,7 +3,6 @@
 import numpy as np
 from photograd_course.grading import Array, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
-    agrees_with_finite_differences,
     random_cotangent,
     require_cheap,
     require_zero_for_zero,
@@ -11,6 +10,7 @@ from photograd_course.grading.adjoint_gate import (
 from photograd_course.grading.generators import unit_vectors
 
 from .common import (
+    agrees_with_differences,
     corner_scene,
     cube,
     glossy,
@@ -32,21 +32,22 @@ EARLIER = "path_tracing.py, your assignment 07, is wrong; photograd course check
     "14.4.differences",
     points=5,
     tolerance=PATHS,
-    hint="equations (16) to (18): at each vertex first direct light, then the BRDF of the bounce",
+    hint="equations (16) to (18): at each vertex first direct light, then the BRDF of the bounce; "
+    "what the visible vertex emits lies behind no bounce",
     sole="the definition: the given `path_radiance`, its proposal held fixed",
 )
 def the_gradient_agrees_with_differences(t):
     """At depth 1 to 4, against finite differences of `path_radiance` at a fixed proposal."""
     scene, rays = corner_scene(t.rng), rays_down(t.rng, 12)
-    point = {name: scene[name] for name in ("base_color", "roughness")}
+    toward = np.array([0, 1.5, 0]) - rays[0][:2]  # two rays see the light, which reflects as well
+    rays[1][:2] = toward / np.linalg.norm(toward, axis=1, keepdims=True)
     for depth in (2, 4):
         seed, d = int(t.rng.integers(10**6)), random_cotangent(t.rng, (12, 3))
 
         def forward(moved, depth=depth, seed=seed):
-            return radiance_of(t, {**scene, **moved}, rays, depth, seed, scene)
+            return radiance_of(t, moved, rays, depth, seed, scene)
 
-        got = replayed(t, scene, rays, depth, seed, d)
-        agrees_with_finite_differences(t, got, forward, point, d, PATHS)
+        agrees_with_differences(t, replayed(t, scene, rays, depth, seed, d), scene, forward, d)
     got = replayed(t, scene, rays, 1, 3, d)
     t.require(
         not (got["base_color"].any() or got["roughness"].any()),

@@ -168,7 +168,7 @@ def test_a_wrong_mean_is_named_by_the_mistake_that_has_it(checks) -> None:
 
 
 def test_predictions_and_diagnoses_come_true(checks) -> None:
-    # Predictions and d2 are facts of Figures 2, 4 and 5. d1: lights counted twice, by depth.
+    # Predictions and d2 are facts of Figures 3, 4 and 5. d1: lights counted twice, by depth.
     twice, rng = loaded(apply_mutant(FOLDER, "trace_double_emission")), np.random.default_rng(13)
     scene = checks.scene_of(checks.cube(emission=1.0, base_color=0.5))
     d = rng.normal(size=(2000, 3))

@@ -13,6 +13,7 @@ import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.load import load_beside
 from photograd_course.build.public import kit_files
+from photograd_course.captures import two_striped_balls
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Status
 from photograd_course.grading.runner import run_checks
@@ -119,21 +120,22 @@ def test_check_values_of_signs_and_fit(solution) -> None:
 
 
 def test_predictions_come_true(solution) -> None:
-    # p1: an empty voxel between camera and ball. p2 and d1 are facts of figures 4, 2 and 3.
+    # p1: an empty voxel between camera and ball. p2 and d1 are facts of figures 6, 4 and 5.
     bright = views(np.full((1, 2, 4, 3), 0.9))
     signs = solution.gradient_sign_map(solution.fog((6, 6, 6)), bright)
     assert set(np.unique(signs)) <= {-1.0, 0.0}
     assert (signs == -1).sum() > 40
     # p3: fewer photographs are matched better, unseen ones worse.
-    draw = load_figures(FOLDER)
-    scene, unseen = draw._two_balls(12, 1.0), []
+    parts = load_figures(FOLDER).parts
+    scene, unseen = two_striped_balls(12), []
     own = []
     for count in (12, 3):
-        taken = draw._photographs(solution, scene, count, 10)
+        taken = parts.photographs(solution, scene, count, 10)
         start = solution.fog((12, 12, 12))
         found, _ = solution.fit_volume(taken, start, 40, np.random.default_rng(0))
-        own.append(draw._score(solution, found, taken))
-        unseen.append(draw._score(solution, found, draw._photographs(solution, scene, 4, 10, 1.0)))
+        own.append(parts.score(solution, found, taken))
+        others = parts.photographs(solution, scene, 4, 10, 1.0)
+        unseen.append(parts.score(solution, found, others))
     assert own[1] > own[0] + 1
     assert unseen[1] < unseen[0] - 1
 

@@ -71,7 +71,7 @@ def a_material_is_recovered(t):
     rays = [each[shown] for each in rays]
     parts = Items(Array((3,)), Number(), names=("base_color", "roughness"))
     picture = photograph(t.reference)
-    found = t.call("adapters.material_found", start, *rays, picture, 3, 40, 600, returns=parts)
+    found = t.call("adapters.material_found", start, *rays, picture, 3, 24, 601, returns=parts)
     off = [*np.abs(found[0] - COLOR) / 0.01, abs(found[1] - ROUGHNESS) / 0.02]
     worst = float(np.max(off))
     t.require(worst <= 1, f"what is found is off by {worst:.2f} times what is allowed")

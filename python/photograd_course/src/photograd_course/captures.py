@@ -27,6 +27,29 @@ BALLS = (
 )
 
 
+def two_striped_balls(n: int, scale: float = 1.0) -> Array:
+    """A volume (n, n, n, 4) of assignment 08, between -1 and 1: two balls with soft edges.
+
+    Args:
+        n: voxels along each axis.
+        scale: of the balls and their distance; 1 nearly fills the box.
+    """
+    x = (np.moveaxis(np.indices((n, n, n)), 0, -1) + 0.5) / n * 2 - 1
+    grid = np.full((n, n, n, 4), 0.5)
+    grid[..., 3] = 0.0
+    for middle, radius, paint in (
+        ((-0.25, 0.0, 0.1), 0.45, (0.95, 0.7, 0.6)),
+        ((0.4, 0.2, -0.25), 0.3, (0.6, 0.75, 0.95)),
+    ):
+        away = np.linalg.norm(x - scale * np.array(middle), axis=-1)
+        inside = np.clip((scale * radius - away) * n / 3 + 0.5, 0, 1)
+        here = inside > grid[..., 3] / 10
+        stripes = 0.75 + 0.25 * np.sin(x[here] @ np.array([6.0, 8.0, 3.0]))
+        grid[here, :3] = stripes[:, None] * paint
+        grid[..., 3] = np.maximum(grid[..., 3], 10 * inside)
+    return grid
+
+
 def all_around(
     count: int, turn: float = 0.0, *, up: int = 2, top: float = 1.0, span: float = 2.0
 ) -> Array:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from typing import TypeVar
 
 Value = TypeVar("Value", int, float, str)
+Result = TypeVar("Result")
 
 
 def option(name: str, default: Value) -> Value:
@@ -22,3 +24,19 @@ def option(name: str, default: Value) -> Value:
     if f"--{name}" not in words:
         return default
     return type(default)(words[words.index(f"--{name}") + 1])
+
+
+def by_the_core(compute: Callable[[], Result]) -> Result | None:
+    """What the C++ core answers; None, and a line on the terminal, where it is not installed.
+
+    Args:
+        compute: imports the core and asks it. Pictures then leave out what would be the core's.
+
+    Returns:
+        the result of ``compute``; None as well where the core is another than it was written for.
+    """
+    try:
+        return compute()
+    except (ImportError, AttributeError, TypeError):
+        sys.stdout.write("core not installed: nothing is compared with it\n")
+        return None
