@@ -84,7 +84,8 @@ def techniques(kind: str, radius: float) -> dict[str, FrameOptions]:
     if kind == "direct light":
         return {
             "one point, shadow map": replace(common, surface_points=1),
-            "16 points, shadow maps *": common,
+            "16 points, shadow maps": common,
+            "16 points, gathered *": replace(common, gather_samples=8),
         }
     if kind == "sky light":
         occlusion = SsaoSettings(radius=0.25 * radius, strength=2.0)

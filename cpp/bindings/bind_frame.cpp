@@ -1,7 +1,9 @@
 // Passes over the pixels of a frame; photograd.frame is the typed face.
 #include "array_args.h"
+#include "camera_args.h"
 #include "module.h"
 #include "photograd/frame/bloom.h"
+#include "photograd/frame/chunk_sums.h"
 #include "photograd/frame/disk_occlusion.h"
 #include "photograd/frame/horizon.h"
 #include "photograd/frame/screen_rays.h"
@@ -91,6 +93,43 @@ void add_bloom_backward(const py::array& color, double threshold, const py::arra
 void check_count(const ArrayArgs& args, const char* name, int value, int most) {
     if (value < 1 || value > most)
         args.range(name, "1 to " + std::to_string(most), std::to_string(value));
+}
+
+/// Unit directions (N, 3) of the world through the centers of pixels (N,), row * width + column.
+void view_directions(const py::tuple& camera_numbers, const py::array& pixels, py::array out) {
+    dispatch_real("view_directions", "out", out, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const Pinhole camera = pinhole(camera_numbers);
+        const std::int64_t* ids = args.in<std::int64_t>("pixels", pixels, "N");
+        R* to = args.out<R>("out", out, "N 3");
+        const std::int64_t count = args.size("N");
+        const py::gil_scoped_release release;
+        for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
+            for (std::int64_t i = first; i < last; ++i) {
+                const R x = R(ids[i] % camera.width) + R(0.5);
+                const R y = R(ids[i] / camera.width) + R(0.5);
+                const Vec3<R> direction = camera.ray(x, y).direction;
+                for (int k = 0; k < 3; ++k) to[3 * i + k] = direction[k];
+            }
+        });
+    });
+}
+
+/// vectors (N, 3) times rotation (3, 3), each component on its own.
+void turn(const py::array& vectors, const py::array& rotation, py::array out) {
+    dispatch_real("turn_vectors", "vectors", vectors, [&](auto real, ArrayArgs& args) {
+        using R = decltype(real);
+        const R* v = args.in<R>("vectors", vectors, "N 3");
+        const R* m = args.in<R>("rotation", rotation, "3 3");
+        R* to = args.out<R>("out", out, "N 3");
+        const std::int64_t count = args.size("N");
+        const py::gil_scoped_release release;
+        for_chunks(count, [&](std::int64_t, std::int64_t first, std::int64_t last) {
+            for (std::int64_t i = 3 * first; i < 3 * last; i += 3)
+                for (int k = 0; k < 3; ++k)
+                    to[i + k] = v[i] * m[k] + v[i + 1] * m[3 + k] + v[i + 2] * m[6 + k];
+        });
+    });
 }
 
 /// intrinsics (fx, fy, cx, cy).
@@ -230,6 +269,10 @@ void bind_frame(py::module_& m) {
     m.def("bloom_backward", &add_bloom_backward, py::arg("color"), py::arg("threshold"),
           py::arg("weights"), py::arg("d_out"), py::arg("d_color"), py::arg("d_weights"),
           py::arg("d_threshold"), "Adds to d_color, d_weights and d_threshold (1,).");
+    m.def("view_directions", &view_directions, py::arg("camera"), py::arg("pixels"), py::arg("out"),
+          "Unit directions (N, 3) through the centers of pixels (N,) int64.");
+    m.def("turn_vectors", &turn, py::arg("vectors"), py::arg("rotation"), py::arg("out"),
+          "out (N, 3) = vectors (N, 3) times rotation (3, 3).");
     m.def("ssao", &occlude, py::arg("inverse_depth"), py::arg("normals"), py::arg("intrinsics"),
           py::arg("settings"), py::arg("samples"), py::arg("out"),
           "settings: (radius, falloff, bias, distribution, strength).");

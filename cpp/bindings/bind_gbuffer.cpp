@@ -8,6 +8,20 @@
 namespace photograd {
 namespace {
 
+/// The least of the numbers [0, count) that are wrong; `count` for none.
+template <class Wrong>
+std::int64_t first_wrong(std::int64_t count, Wrong&& wrong) {
+    constexpr std::int64_t piece = 1 << 14;
+    std::vector<std::int64_t> found(static_cast<std::size_t>((count + piece - 1) / piece), count);
+    parallel_for(static_cast<std::int64_t>(found.size()), [&](std::int64_t p) {
+        const std::int64_t end = std::min(count, (p + 1) * piece);
+        std::int64_t i = p * piece;
+        while (i < end && !wrong(i)) ++i;
+        if (i < end) found[static_cast<std::size_t>(p)] = i;
+    });
+    return found.empty() ? count : *std::min_element(found.begin(), found.end());
+}
+
 /// {name: array} of all of a G-buffer; rows (N, P), P of 0 for none.
 using GBufferArrays = std::map<std::string, py::array>;
 
@@ -39,42 +53,53 @@ GBuffer<R> gbuffer_of(ArrayArgs& args, GBufferArrays& arrays) {
     return out;
 }
 
-void fill(const SceneRows& rows, const py::tuple& camera_numbers, const py::array& shape,
-          const py::array& primitive, GBufferArrays gbuffer) {
+/// shape, primitive (F,): of each face, of which `face` (N,) names those that are seen.
+void fill(const SceneRows& rows, const py::tuple& camera_numbers, const py::array& face,
+          const py::array& shape, const py::array& primitive, GBufferArrays gbuffer) {
     dispatch_real("fill_gbuffer", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        const SceneNumbers<R> numbers(args, rows);
+        const SceneNumbers<R> described(args, rows);
         const Pinhole camera = pinhole(camera_numbers);
-        const std::int32_t* s = args.in<std::int32_t>("shape", shape, "N");
-        const std::int32_t* p = args.in<std::int32_t>("primitive", primitive, "N");
+        const std::int32_t* numbers = args.in<std::int32_t>("face", face, "N");
+        const std::int32_t* s = args.in<std::int32_t>("shape", shape, "F");
+        const std::int32_t* p = args.in<std::int32_t>("primitive", primitive, "F");
         if (args.size("N") != std::int64_t{camera.width} * camera.height)
-            args.range("shape", "one number a pixel", std::to_string(args.size("N")));
+            args.range("face", "one number a pixel", std::to_string(args.size("N")));
+        const std::int64_t pixels = args.size("N"), faces = args.size("F");
+        const std::int64_t beyond =
+            first_wrong(pixels, [&](std::int64_t i) { return numbers[i] >= faces; });
+        if (beyond < pixels)
+            args.range("face", "numbers below " + std::to_string(faces),
+                       std::to_string(numbers[beyond]));
         const Bvh& bvh = rows.geometry.bvh;
-        for (std::int64_t i = 0; i < args.size("N"); ++i) {
-            if (s[i] < 0) continue;
-            const bool known = s[i] < static_cast<std::int32_t>(bvh.first_solid());
+        const std::int64_t unknown = first_wrong(faces, [&](std::int64_t i) {
+            const bool known = s[i] >= 0 && s[i] < bvh.first_solid();
             const bool sphere = known && s[i] >= static_cast<std::int32_t>(bvh.sphere_instance());
             const std::int64_t end = sphere ? static_cast<std::int64_t>(bvh.spheres().size())
                                      : known
                                          ? static_cast<std::int64_t>(bvh.mesh_of(s[i]).face_count())
                                          : 0;
-            if (p[i] < 0 || p[i] >= end)
-                args.range("primitive", "a primitive of shape " + std::to_string(s[i]),
-                           std::to_string(p[i]));
-        }
+            return p[i] < 0 || p[i] >= end;
+        });
+        if (unknown < faces)
+            args.range("primitive", "a primitive of shape " + std::to_string(s[unknown]),
+                       std::to_string(p[unknown]));
         const GBuffer<R> out = gbuffer_of<R>(args, gbuffer);
         const py::gil_scoped_release release;
-        fill_gbuffer(numbers.scene, camera, s, p, out);
+        fill_gbuffer(described.scene, camera, {numbers, s, p}, out);
     });
 }
 
 /// Refuses numbers of materials that the scene has not.
 template <class R>
 void check_materials(const ArrayArgs& args, const SceneNumbers<R>& numbers, const GBuffer<R>& in) {
-    for (std::int64_t i = 0; i < args.size("N"); ++i)
-        if (in.material[i] >= static_cast<std::int32_t>(numbers.materials.size()))
-            args.range("material", "numbers below " + std::to_string(numbers.materials.size()),
-                       std::to_string(in.material[i]));
+    const auto end = static_cast<std::int32_t>(numbers.materials.size());
+    const std::int64_t count = args.size("N");
+    const std::int64_t found =
+        first_wrong(count, [&](std::int64_t i) { return in.material[i] >= end; });
+    if (found < count)
+        args.range("material", "numbers below " + std::to_string(end),
+                   std::to_string(in.material[found]));
 }
 
 void light(const SceneRows& rows, const std::array<double, 3>& eye, GBufferArrays gbuffer,
@@ -153,10 +178,10 @@ void find_pdf(const SceneRows& rows, const std::array<double, 3>& eye, GBufferAr
 
 void bind_gbuffer(py::module_& m) {
     with_scene_names([&](auto... scene) {
-        m.def("fill_gbuffer", of_scene(&fill), scene..., py::arg("camera"), py::arg("shape"),
-              py::arg("primitive"), py::arg("gbuffer"),
-              "Writes the arrays of gbuffer; shape (N,) counts instances of meshes, then spheres; "
-              "-1 sees nothing.");
+        m.def("fill_gbuffer", of_scene(&fill), scene..., py::arg("camera"), py::arg("face"),
+              py::arg("shape"), py::arg("primitive"), py::arg("gbuffer"),
+              "Writes the arrays of gbuffer; face (N,) is negative where nothing is seen; shape "
+              "(F,) of each face counts instances of meshes, then spheres.");
         m.def("light_gbuffer", of_scene(&light), scene..., py::arg("eye"), py::arg("gbuffer"),
               py::arg("wi"), py::arg("irradiance"), py::arg("out"), "Adds to out (N, 3).");
         m.def("light_gbuffer_parallel", of_scene(&light_parallel), scene..., py::arg("eye"),

@@ -65,11 +65,36 @@ StencilRules stencil_of(const ArrayArgs& args, const std::array<int, 7>& n) {
     return {compare_of(args, "stencil", n[0]), byte(1), byte(2), byte(3), ops[0], ops[1], ops[2]};
 }
 
+/// camera_from_world (3, 4); positions (V, 3) = K (R X + t).
+void project(const py::array& vertices, const py::array& camera_from_world,
+             const std::array<double, 4>& intrinsics, py::array positions) {
+    ArrayArgs args("project");
+    const double* x = args.in<double>("vertices", vertices, "V 3");
+    const double* m = args.in<double>("camera_from_world", camera_from_world, "3 4");
+    double* out = args.out<double>("positions", positions, "V 3");
+    const auto [fx, fy, cx, cy] = intrinsics;
+    const std::int64_t count = args.size("V");
+    constexpr std::int64_t piece = 4096;
+    const py::gil_scoped_release release;
+    parallel_for((count + piece - 1) / piece, [&](std::int64_t p) {
+        for (std::int64_t i = p * piece; i < std::min(count, (p + 1) * piece); ++i) {
+            double q[3];
+            for (int k = 0; k < 3; ++k) {
+                const double* row = m + 4 * k;
+                q[k] = x[3 * i] * row[0] + x[3 * i + 1] * row[1] + x[3 * i + 2] * row[2] + row[3];
+            }
+            out[3 * i] = fx * q[0] + cx * q[2];
+            out[3 * i + 1] = fy * q[1] + cy * q[2];
+            out[3 * i + 2] = q[2];
+        }
+    });
+}
+
 void draw(const py::array& positions, const py::array& faces, double near, double far, int cull,
           int depth_test, bool depth_write, const std::array<int, 7>& stencil_rules,
           std::int32_t first_face, py::array face, py::array barycentrics, py::array depth,
           const py::object& stencil, const py::object& overdraw,
-          const std::optional<py::array>& behind) {
+          const std::optional<py::array>& behind, const std::optional<py::array>& drawn) {
     ArrayArgs args("rasterize");
     std::int32_t* numbers = args.out<std::int32_t>("face", face, "H W");
     VisibilityBuffers out{numbers,
@@ -78,7 +103,8 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
                           nullptr,
                           first_face,
                           nullptr,
-                          behind ? args.in<double>("behind", *behind, "H W") : nullptr};
+                          behind ? args.in<double>("behind", *behind, "H W") : nullptr,
+                          false};
     py::array bytes, counts;
     if (!stencil.is_none()) {
         bytes = stencil.cast<py::array>();
@@ -88,8 +114,9 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
         counts = overdraw.cast<py::array>();
         out.overdraw = args.out<std::int32_t>("overdraw", counts, "H W");
     }
-    const ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
-                                    static_cast<int>(args.size("W")));
+    ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
+                              static_cast<int>(args.size("W")));
+    if (drawn) mesh.drawn = args.in<bool>("drawn", *drawn, "F");
     check_range(args, near, far);
     if (cull < 0 || cull > 2) args.range("cull", "0 to 2", std::to_string(cull));
     if (first_face < 0 || mesh.face_count() > 0x7fffffff - std::int64_t{first_face})
@@ -105,12 +132,14 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
 }
 
 void draw_depth(const py::array& positions, const py::array& faces, double near, double far,
-                py::array depth) {
+                py::array depth, const std::optional<py::array>& drawn) {
     ArrayArgs args("rasterize_depth");
-    const VisibilityBuffers out{
-        nullptr, nullptr, args.out<double>("depth", depth, "H W"), nullptr, 0, nullptr, nullptr};
-    const ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
-                                    static_cast<int>(args.size("W")));
+    const VisibilityBuffers out{nullptr, nullptr, args.out<double>("depth", depth, "H W"),
+                                nullptr, 0,       nullptr,
+                                nullptr, true};
+    ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
+                              static_cast<int>(args.size("W")));
+    if (drawn) mesh.drawn = args.in<bool>("drawn", *drawn, "F");
     check_range(args, near, far);
     const FragmentRules rules{Cull::none, Compare::less, true, near, far, {}};
     const py::gil_scoped_release release;
@@ -224,14 +253,21 @@ py::array count_nearer(const PreparedTriangles& triangles, const py::array& poin
 }  // namespace
 
 void bind_raster(py::module_& m) {
+    m.def("project", &project, py::arg("vertices"), py::arg("camera_from_world"),
+          py::arg("intrinsics"), py::arg("positions"),
+          "positions (V, 3) in homogeneous pixels; camera_from_world (3, 4), (fx, fy, cx, cy).");
     m.def("rasterize", &draw, py::arg("positions"), py::arg("faces"), py::arg("near"),
           py::arg("far"), py::arg("cull"), py::arg("depth_test"), py::arg("depth_write"),
           py::arg("stencil_rules"), py::arg("first_face"), py::arg("face"), py::arg("barycentrics"),
           py::arg("depth"), py::arg("stencil"), py::arg("overdraw"), py::arg("behind") = py::none(),
+          py::arg("drawn") = py::none(),
           "Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; "
-          "only what lies behind `behind` (H, W) unless None.");
+          "only what lies behind `behind` (H, W), and only faces that are `drawn` (F,), unless "
+          "None.");
     m.def("rasterize_depth", &draw_depth, py::arg("positions"), py::arg("faces"), py::arg("near"),
-          py::arg("far"), py::arg("depth"), "Draws onto depth (H, W) alone.");
+          py::arg("far"), py::arg("depth"), py::arg("drawn") = py::none(),
+          "Writes depth (H, W) alone, infinite where nothing is seen; of faces that are `drawn` "
+          "(F,) unless None.");
     m.def("rasterize_backward", &draw_backward, py::arg("positions"), py::arg("faces"),
           py::arg("face"), py::arg("d_barycentrics"), py::arg("d_depth"), py::arg("d_positions"),
           "Adds to d_positions.");

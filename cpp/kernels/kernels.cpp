@@ -12,6 +12,7 @@
 #include "kernels/principled.inl"
 #include "kernels/sample_rgb.inl"
 #include "kernels/sh_rgb.inl"
+#include "kernels/ssao_row.inl"
 
 namespace photograd::PHOTOGRAD_ISA {
 
@@ -32,6 +33,7 @@ extern const Kernels table{
     .march_sparse_sh_weights = &march_sparse_sh_weights,
     .march_sparse_sh_gather = &march_sparse_sh_gather,
     .draw_span = &draw_span,
+    .ssao_row = &ssao_row,
     .hash_encode = &hash_encode,
     .hash_scatter = &hash_scatter,
     .hash_points = &hash_points,

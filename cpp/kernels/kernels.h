@@ -10,6 +10,7 @@
 #include "kernels/principled.h"
 #include "kernels/sample_rgb.h"
 #include "kernels/sh_rgb.h"
+#include "kernels/ssao_row.h"
 #include "photograd/splat/tiles.h"
 
 namespace photograd {
@@ -38,6 +39,7 @@ struct Kernels {
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
     void (*draw_span)(const DrawSpan&);
+    void (*ssao_row)(const SsaoRows&, std::int64_t y);
     void (*hash_encode)(const HashEncode&, std::int64_t begin, std::int64_t end);
     void (*hash_scatter)(const HashScatter&, std::int64_t begin, std::int64_t end);
     void (*hash_points)(const HashPoints&, std::int64_t begin, std::int64_t end);

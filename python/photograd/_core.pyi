@@ -117,6 +117,7 @@ __all__: list[str] = [
     "prepare_splats",
     "principled_values",
     "principled_values_backward",
+    "project",
     "rasterize",
     "rasterize_backward",
     "rasterize_depth",
@@ -161,7 +162,9 @@ __all__: list[str] = [
     "trace_paths_tangent",
     "trace_photons",
     "trace_reference",
+    "turn_vectors",
     "uniform",
+    "view_directions",
     "visible_samples",
     "write_vdb",
 ]
@@ -1592,12 +1595,13 @@ def fill_gbuffer(
         tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
     ],
     camera: tuple[typing.Any, ...],
+    face: numpy.ndarray,
     shape: numpy.ndarray,
     primitive: numpy.ndarray,
     gbuffer: collections.abc.Mapping[str, numpy.ndarray],
 ) -> None:
     """
-    Writes the arrays of gbuffer; shape (N,) counts instances of meshes, then spheres; -1 sees nothing.
+    Writes the arrays of gbuffer; face (N,) is negative where nothing is seen; shape (F,) of each face counts instances of meshes, then spheres.
     """
 
 def follow_screen_rays(
@@ -2064,6 +2068,18 @@ def principled_values_backward(
     Adds to d_parameters (T, 5) for d_values (N, 3).
     """
 
+def project(
+    vertices: numpy.ndarray,
+    camera_from_world: numpy.ndarray,
+    intrinsics: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+    positions: numpy.ndarray,
+) -> None:
+    """
+    positions (V, 3) in homogeneous pixels; camera_from_world (3, 4), (fx, fy, cx, cy).
+    """
+
 def rasterize(
     positions: numpy.ndarray,
     faces: numpy.ndarray,
@@ -2082,9 +2098,10 @@ def rasterize(
     stencil: typing.Any,
     overdraw: typing.Any,
     behind: numpy.ndarray | None = None,
+    drawn: numpy.ndarray | None = None,
 ) -> None:
     """
-    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; only what lies behind `behind` (H, W) unless None.
+    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; only what lies behind `behind` (H, W), and only faces that are `drawn` (F,), unless None.
     """
 
 def rasterize_backward(
@@ -2105,9 +2122,10 @@ def rasterize_depth(
     near: typing.SupportsFloat | typing.SupportsIndex,
     far: typing.SupportsFloat | typing.SupportsIndex,
     depth: numpy.ndarray,
+    drawn: numpy.ndarray | None = None,
 ) -> None:
     """
-    Draws onto depth (H, W) alone.
+    Writes depth (H, W) alone, infinite where nothing is seen; of faces that are `drawn` (F,) unless None.
     """
 
 def read_vdb(
@@ -2622,6 +2640,11 @@ def trace_reference(
     As trace_paths, by a scalar tracer that is written to be read; float64.
     """
 
+def turn_vectors(vectors: numpy.ndarray, rotation: numpy.ndarray, out: numpy.ndarray) -> None:
+    """
+    out (N, 3) = vectors (N, 3) times rotation (3, 3).
+    """
+
 def uniform(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,
@@ -2631,6 +2654,13 @@ def uniform(
 ) -> numpy.typing.NDArray[numpy.float64]:
     """
     Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.
+    """
+
+def view_directions(
+    camera: tuple[typing.Any, ...], pixels: numpy.ndarray, out: numpy.ndarray
+) -> None:
+    """
+    Unit directions (N, 3) through the centers of pixels (N,) int64.
     """
 
 def visible_samples(

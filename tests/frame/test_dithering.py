@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from photograd.errors import RangeError
-from photograd.frame import dither
+from photograd.frame import FrameOptions, FrameScene, dither, frame_graph
+from photograd_course.color import srgb_encode
+
+from tests.frame import scenes
 
 
 def test_without_noise_it_is_rounding() -> None:
@@ -28,8 +31,36 @@ def test_the_seed_decides() -> None:
     assert set(np.round(dither(picture, levels=4) * 3).ravel()) <= {0, 1, 2, 3}
 
 
+@pytest.mark.usefixtures("core")
+def test_the_pass_rounds_the_display_and_without_levels_does_nothing() -> None:
+    scene = scenes.room(scenes.LIGHTS["directional"])
+    found = {}
+    for levels, seed in ((0, 0), (32, 0), (32, 0), (32, 5), (256, 0)):
+        options = FrameOptions(sky_directions=0, dither_levels=levels, dither_seed=seed)
+        result = frame_graph(FrameScene(scene), options).run({"camera": scene.camera})
+        shown = srgb_encode(np.clip(result["display"], 0.0, 1.0))
+        found.setdefault((levels, seed), []).append(shown)
+        if not levels:
+            np.testing.assert_array_equal(result["display"], result["smoothed"])
+    (plain,), coarse, (other,), (fine,) = found.values()
+    np.testing.assert_array_equal(*coarse)
+    assert (coarse[0] != other).any()
+    for levels, shown in ((32, coarse[0]), (256, fine)):
+        steps = shown * (levels - 1)
+        assert np.abs(steps - np.rint(steps)).max() < 1e-3
+        assert 0.5 < np.abs(shown - plain).max() * (levels - 1) < 1.5 + 1e-3
+    # Away from black and white, where noise is cut off, the mean stays.
+    inside = (plain > 0.1) & (plain < 0.9)
+    assert inside.sum() > 3000
+    deviation = (coarse[0] - plain)[inside]
+    assert abs(float(deviation.mean())) < 4 * float(deviation.std()) / np.sqrt(inside.sum())
+
+
 def test_other_numbers_are_refused() -> None:
     with pytest.raises(RangeError, match="dither: display"):
         dither(np.full((2, 2, 3), 1.5))
     with pytest.raises(RangeError, match="dither: levels"):
         dither(np.zeros((2, 2, 3)), levels=1)
+    for wrong in (1, -1, 65537):
+        with pytest.raises(RangeError, match="FrameOptions: dither_levels"):
+            FrameOptions(dither_levels=wrong)

@@ -11,8 +11,11 @@ from photograd.frame import (
     FrameScene,
     LastFrame,
     ShadowSettings,
+    SsaoSettings,
     bloom_backward,
+    draw_surfaces,
     frame_graph,
+    ssao,
     ssao_backward,
     tone_map_backward,
 )
@@ -45,6 +48,20 @@ def everything() -> list[Any]:
     shadow = result["shadows"]["lights.0"].depths
     buffers = [visible.position, visible.shading, shadow, result["direct"], result["display"]]
     return [*buffers, *occlusion.values(), *spread, tones[0], *tones[1].values()]
+
+
+@same_bits("ambient occlusion", kernels=("draw_span", "ssao_row"))
+def occluded() -> list[Any]:
+    """Widths that fill lanes and that do not, a narrow picture, and many samples."""
+    made = []
+    scene = FrameScene(scenes.room(None))
+    for width, height, samples in ((96, 64, 8), (81, 35, 16), (1, 40, 5), (33, 1, 3)):
+        camera = scenes.camera(width, height)
+        visible = draw_surfaces(scene, camera, "opaque")[1]
+        depth = visible.depth.astype(np.float32)
+        settings = SsaoSettings(radius=0.7, falloff=1.3, distribution=0.8)
+        made.append(ssao(depth, visible.shading, camera, settings, samples=samples))
+    return made
 
 
 @same_bits("frame of a sky")

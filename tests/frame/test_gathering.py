@@ -13,14 +13,17 @@ from photograd.frame import (
     FrameScene,
     ScreenRaySettings,
     ShadowSettings,
+    draw_shadow_maps,
     draw_surfaces,
     frame_graph,
     gather,
     reflect,
     reflectance_pdf,
     sample_reflectance,
+    sky_lights,
 )
 from photograd.frame.against import compare_with_paths
+from photograd.frame.gathering import nearest_shadow
 from photograd.transport import Material, Scene
 from photograd.transport.builtin import builtin_scene
 from photograd.transport.scene import Environment
@@ -190,6 +193,28 @@ def test_specular_metal_shows_what_the_frame_shows() -> None:
     beyond = on_floor & (rises > 1.1)
     assert beyond.any()
     assert not lit[beyond].any()
+
+
+def test_where_maps_tell_what_hides_the_sky_the_depths_of_the_frame_do_not() -> None:
+    """A ray behind a ball is stopped by it, or not, as thick as surfaces are thought to be."""
+    ready, shown = surfaces(replace(scenes.room(None), environment=EVEN))
+    sky, settings = sky_lights(ready, 16), ShadowSettings(size=64)
+    shadows = draw_shadow_maps(ready, sky, settings)
+
+    def sky_alone(thickness: float, maps: bool, light: Any) -> Any:
+        def visible(wi: Any) -> Any:
+            return nearest_shadow(shown, wi, sky, shadows, settings)
+
+        rays = ScreenRaySettings(length=3.0, thickness=thickness, steps=32)
+        asked = visible if maps else None
+        return gather(ready, shown, light, rays, samples=2, sky_directions=16, sky_visibility=asked)
+
+    dark = np.zeros_like(shown.position)
+    thin, thick = (sky_alone(by, True, dark) for by in (0.01, 50.0))
+    np.testing.assert_array_equal(thin, thick)
+    np.testing.assert_array_equal(thin, sky_alone(0.01, True, None))
+    assert thin.any()
+    assert np.abs(sky_alone(0.01, False, None) - sky_alone(50.0, False, None)).max() > 0.1
 
 
 def test_mistakes_are_named() -> None:

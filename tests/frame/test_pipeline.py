@@ -27,7 +27,17 @@ def displayed(options: FrameOptions, lens: Lens | None = None) -> Any:
 
 def test_a_plain_frame_shows_its_radiance() -> None:
     found = displayed(PLAIN)
-    for name in ("opaque", "layered", "fogged", "focused", "radiance", "bloom", "lens", "toned"):
+    for name in (
+        "opaque",
+        "layered",
+        "fogged",
+        "focused",
+        "radiance",
+        "bloom",
+        "lens",
+        "toned",
+        "smoothed",
+    ):
         np.testing.assert_array_equal(found[name], found["display"])
 
 
@@ -39,7 +49,8 @@ def test_a_plain_frame_shows_its_radiance() -> None:
         ({"vignette": 1.0}, "bloom", "lens"),
         ({"tone_curve": "agx"}, "lens", "toned"),
         ({"exposure": 1.0}, "lens", "toned"),
-        ({"fxaa": True}, "toned", "display"),
+        ({"fxaa": True}, "toned", "smoothed"),
+        ({"dither_levels": 64}, "smoothed", "display"),
         ({"depth_of_field": 32}, "layered", "focused"),
     ],
 )

@@ -57,6 +57,32 @@ def test_wrong_gradients_are_noticed() -> None:
     assert report, str(report)
 
 
+@pytest.mark.parametrize("size", [(96, 64), (81, 35), (17, 3), (1, 40), (33, 1)])
+def test_lanes_agree_with_one_pixel_after_the_other(size: tuple[int, int]) -> None:
+    """float32 goes through the kernel of lanes, float64 through its scalar form."""
+    scene = replace(scenes.room(None), camera=scenes.camera(*size))
+    visible = surfaces(scene)
+    for samples in (1, 5, 16):
+        exact = ssao(visible.depth, visible.shading, visible.camera, WIDE, samples=samples)
+        depth, normals = (a.astype(np.float32) for a in (visible.depth, visible.shading))
+        found = ssao(depth, normals, visible.camera, WIDE, samples=samples)
+        # A sample beside an edge of the bias or the radius may fall to the other side.
+        assert np.median(np.abs(found - exact)) < 1e-5
+        assert np.mean(np.abs(found - exact) > 1e-3) < 0.01
+        assert (found[~visible.covered] == 1).all()
+    if min(size) > 16:
+        assert exact.std() > 0.03
+
+
+def test_depths_out_of_range_do_no_harm() -> None:
+    depth = np.full((5, 20), 1e-38, np.float32)
+    depth[:, ::3] = np.inf
+    normals = np.zeros((5, 20, 3), np.float32)
+    normals[..., 2] = -1.0
+    camera = scenes.camera(20, 5)
+    assert ssao(depth, normals, camera, WIDE).shape == (5, 20)
+
+
 def test_a_flat_wall_does_not_occlude_itself() -> None:
     scene = replace(scenes.room(None), shapes=(scenes.floor(),))
     for bias in (0.0, 0.05):

@@ -176,3 +176,20 @@ def test_a_camera_projects_as_it_does_elsewhere() -> None:
     pixels, depths = camera.project(vertices)
     np.testing.assert_allclose(positions[:, :2] / positions[:, 2:], pixels, rtol=1e-12)
     np.testing.assert_allclose(positions[:, 2], depths, rtol=1e-12)
+
+
+def test_only_faces_that_are_drawn_hide_others() -> None:
+    positions, faces = scene("soup")
+    drawn = np.random.default_rng(3).uniform(size=len(faces)) < 0.6
+    some = rasterize(positions, faces, SIZE, drawn=drawn)
+    alone = rasterize(positions, faces[drawn], SIZE)
+    assert alone.covered.sum() > 10
+    assert (some.face != rasterize(positions, faces, SIZE).face).any()
+    np.testing.assert_array_equal(
+        some.face, np.where(alone.covered, np.flatnonzero(drawn)[alone.face], -1)
+    )
+    np.testing.assert_array_equal(some.depth, alone.depth)
+    np.testing.assert_array_equal(some.barycentrics, alone.barycentrics)
+    np.testing.assert_array_equal(some.overdraw, alone.overdraw)
+    with pytest.raises(ShapeError, match="rasterize: drawn"):
+        rasterize(positions, faces, SIZE, drawn=drawn[1:])

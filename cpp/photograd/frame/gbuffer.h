@@ -20,10 +20,16 @@ struct GBuffer {
     int row_size;  // 0 for none
 };
 
-/// `shape` and `primitive` (H, W), shape -1 where nothing is seen; all of `out` is written.
+/// Which face each pixel sees (H, W), below 0 for none; and of each face (F,) the shape, and its
+/// primitive there.
+struct SeenFaces {
+    const std::int32_t *face, *shape, *primitive;
+};
+
+/// All of `out` is written.
 template <Real R>
-void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const std::int32_t* shape,
-                  const std::int32_t* primitive, const GBuffer<R>& out);
+void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const SeenFaces& seen,
+                  const GBuffer<R>& out);
 
 /// Light that arrives: from wi (N, 3), a unit vector of the world, as irradiance (N, 3) of what
 /// faces it. Adds f cos irradiance to out (N, 3); black rows cost nothing.

@@ -39,10 +39,12 @@ struct InverseDepth {
     static InverseDepth at(const ScreenFrame<R>& frame, R x, R y) {
         const R fx = std::clamp(x - R(0.5), R(0), R(frame.width - 1));
         const R fy = std::clamp(y - R(0.5), R(0), R(frame.height - 1));
-        const auto x0 =
-            std::min(static_cast<std::int64_t>(fx), std::max<std::int64_t>(frame.width - 2, 0));
-        const auto y0 =
-            std::min(static_cast<std::int64_t>(fy), std::max<std::int64_t>(frame.height - 2, 0));
+        // What is no number, of depths out of R's range, stays inside as well.
+        const auto lower = [](R f, std::int64_t size) {
+            return std::clamp<std::int64_t>(static_cast<std::int64_t>(f), 0,
+                                            std::max<std::int64_t>(size - 2, 0));
+        };
+        const std::int64_t x0 = lower(fx, frame.width), y0 = lower(fy, frame.height);
         const std::int64_t x1 = std::min(x0 + 1, frame.width - 1);
         const std::int64_t y1 = std::min(y0 + 1, frame.height - 1);
         const R tx = fx - R(x0), ty = fy - R(y0);

@@ -22,6 +22,13 @@ double lit_part(const ShadowView& view, const ShadowFilter& filter, const Vec3<d
     const int column = static_cast<int>(q.x / q.z), row = static_cast<int>(q.y / q.z);
     const double depth = q.z - filter.depth_bias;
     int lit = 0, taps = 0;
+    if (const int r = filter.radius, inner = filter.size - r;
+        column >= r && row >= r && column < inner && row < inner) {
+        const double* first = view.depth + std::int64_t{row - r} * filter.size + column - r;
+        for (int y = 0; y <= 2 * r; ++y, first += filter.size)
+            for (int x = 0; x <= 2 * r; ++x) lit += depth <= first[x];
+        return double(lit) / ((2 * r + 1) * (2 * r + 1));
+    }
     for (int y = row - filter.radius; y <= row + filter.radius; ++y)
         for (int x = column - filter.radius; x <= column + filter.radius; ++x) {
             if (x < 0 || y < 0 || x >= filter.size || y >= filter.size) continue;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/kernels.h"
 #include "photograd/core/sincos.h"
 #include "photograd/frame/chunk_sums.h"
 #include "photograd/ops/obscurance.h"
@@ -109,6 +110,37 @@ private:
     Vec3<R> point_{R(0)}, normal_{R(0)};
 };
 
+/// By lanes, in pictures whose pixels 32 bits number.
+void occlude_rows(const ScreenFrame<float>& frame, const SsaoSettings<float>& settings, int samples,
+                  float* out) {
+    const Spiral<float> spiral(samples, settings.distribution);
+    std::array<float, 16> turn_cosine{}, turn_sine{};
+    for (std::size_t i = 0; i < 16; ++i) {
+        const auto turn = static_cast<std::size_t>(turn_of_pixel(i % 4, i / 4));
+        turn_cosine[i] = spiral.turn_cosine[turn], turn_sine[i] = spiral.turn_sine[turn];
+    }
+    const SsaoRows rows{frame.height,
+                        frame.width,
+                        frame.fx,
+                        frame.fy,
+                        frame.cx,
+                        frame.cy,
+                        frame.inverse_depth,
+                        frame.normals,
+                        settings.radius,
+                        settings.falloff,
+                        settings.bias,
+                        settings.strength,
+                        samples,
+                        spiral.cosine.data(),
+                        spiral.sine.data(),
+                        spiral.alpha.data(),
+                        turn_cosine.data(),
+                        turn_sine.data(),
+                        out};
+    parallel_for(frame.height, [&](std::int64_t y) { kernels().ssao_row(rows, y); });
+}
+
 template <Real R>
 void occlude_pixels(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples,
                     R* out) {
@@ -152,6 +184,9 @@ void occlude_pixels_backward(const ScreenFrame<R>& frame, const SsaoSettings<R>&
 
 template <Real R>
 void ssao(const ScreenFrame<R>& frame, const SsaoSettings<R>& settings, int samples, R* out) {
+    if constexpr (std::same_as<R, float>)
+        if (frame.height * frame.width < std::int64_t{1} << 31)
+            return occlude_rows(frame, settings, samples, out);
     occlude_pixels(frame, settings, samples, out);
 }
 template <Real R>

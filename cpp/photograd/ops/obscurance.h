@@ -8,8 +8,8 @@
 //   dfall/dr = 2 k t^(k-1) |v|^2 / r^3,  dfall/dk = fall ln t
 #pragma once
 
-#include "photograd/core/log.h"
 #include "photograd/core/vec.h"
+#include "photograd/ops/obscurance_terms.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
@@ -24,10 +24,7 @@ struct Obscurance {
 
 template <class R>
 inline R obscurance(const Vec3<R>& v, const Vec3<R>& n, const Obscurance<R>& by) {
-    const R squared = dot(v, v), t = R(1) - squared / (by.radius * by.radius);
-    if (!(t > R(0)) || !(squared > R(0))) return R(0);
-    const R e = dot(v, n) / sqrt(squared) - by.bias;
-    return e > R(0) ? e * pow(t, by.falloff) : R(0);
+    return obscurance_terms(dot(v, v), dot(v, n), by.radius, by.falloff, by.bias);
 }
 /// Adds to d_v and d_by; n is held.
 template <class R>

@@ -43,10 +43,41 @@ struct Bounds {
 /// on it: that with the edge on its left or, if it is level, on top.
 bool owns_its_edge(const Vec3<double>& line) { return line.x > 0 || (line.x == 0 && line.y > 0); }
 
-ScreenTriangle set_up(const ScreenMesh& mesh, std::uint32_t face, double near, Reach reach) {
+/// floor and ceil of numbers that are cut to [-1, high + 1] first.
+int floor_within(double x, int high) {
+    const double cut = x > -1 ? std::min(x, high + 1.0) : -1;
+    const int whole = static_cast<int>(cut);
+    return whole - (cut < whole ? 1 : 0);
+}
+int ceil_within(double x, int high) {
+    const double cut = x > -1 ? std::min(x, high + 1.0) : -1;
+    const int whole = static_cast<int>(cut);
+    return whole + (cut > whole ? 1 : 0);
+}
+
+/// Pixels [box[k][0], box[k][1]) along each axis in which points may lie that are asked for.
+void find_box(const Bounds& bounds, const int (&sizes)[2], Reach reach, int (&box)[2][2]) {
+    for (int k = 0; k < 2; ++k) {
+        const double slack = 1e-9 * (1 + std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k])));
+        const double lo = bounds.lo[k] - slack, hi = bounds.hi[k] + slack;
+        const bool centers = reach == Reach::centers;
+        const int first = centers ? ceil_within(lo - 0.5, sizes[k]) : floor_within(lo, sizes[k]);
+        const int last = floor_within(centers ? hi - 0.5 : hi, sizes[k]);
+        box[k][0] = std::clamp(first, 0, sizes[k]);
+        box[k][1] = std::clamp(last + 1, box[k][0], sizes[k]);
+    }
+}
+
+/// False, with `out` not written whole, for a triangle that is not drawn.
+bool set_up(const ScreenMesh& mesh, std::uint32_t face, double near, Reach reach,
+            ScreenTriangle& out) {
     const Vec3<double> v[3] = {mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2)};
-    ScreenTriangle out{TriangleEdges<double>::of(v[0], v[1], v[2]), {}, 0, 0, 0, 0, false};
-    if (out.edges.det == 0 || std::max({v[0].z, v[1].z, v[2].z}) < near) return out;
+    if (std::max({v[0].z, v[1].z, v[2].z}) < near) return false;
+    int box[2][2];
+    find_box(Bounds::of(v, near), {mesh.width, mesh.height}, reach, box);
+    if (box[0][0] == box[0][1] || box[1][0] == box[1][1]) return false;
+    out.edges = TriangleEdges<double>::of(v[0], v[1], v[2]);
+    if (out.edges.det == 0) return false;
     out.front = out.edges.det < 0;
     if (out.front) {
         out.edges.det = -out.edges.det;
@@ -56,27 +87,14 @@ ScreenTriangle set_up(const ScreenMesh& mesh, std::uint32_t face, double near, R
     for (int i = 0; i < 3; ++i)
         out.least[i] =
             owns_its_edge(out.edges.line[i]) ? -std::numeric_limits<double>::denorm_min() : 0.0;
-    const Bounds bounds = Bounds::of(v, near);
-    const int sizes[2] = {mesh.width, mesh.height};
-    int box[2][2];
-    for (int k = 0; k < 2; ++k) {
-        const double slack = 1e-9 * (1 + std::max(std::abs(bounds.lo[k]), std::abs(bounds.hi[k])));
-        const double lo = bounds.lo[k] - slack, hi = bounds.hi[k] + slack;
-        const bool centers = reach == Reach::centers;
-        const double first = centers ? std::ceil(lo - 0.5) : std::floor(lo);
-        const double last = centers ? std::floor(hi - 0.5) : std::floor(hi);
-        box[k][0] = static_cast<int>(std::clamp(first, 0.0, double(sizes[k])));
-        box[k][1] = static_cast<int>(std::clamp(last + 1, double(box[k][0]), double(sizes[k])));
-    }
-    if (box[0][0] == box[0][1] || box[1][0] == box[1][1]) return out;
     out.x0 = box[0][0], out.x1 = box[0][1], out.y0 = box[1][0], out.y1 = box[1][1];
-    return out;
+    out.face = face;
+    return true;
 }
 
 /// visit(tile) for each tile that the box touches.
 template <class Visit>
 void for_tiles_of(const ScreenTriangle& t, int columns, Visit&& visit) {
-    if (t.x0 == t.x1) return;
     for (int y = t.y0 / raster_tile; y <= (t.y1 - 1) / raster_tile; ++y)
         for (int x = t.x0 / raster_tile; x <= (t.x1 - 1) / raster_tile; ++x)
             visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -90,20 +108,21 @@ PreparedTriangles::PreparedTriangles(const ScreenMesh& mesh, double near, Reach 
       height_(mesh.height),
       columns_((mesh.width + raster_tile - 1) / raster_tile),
       rows_((mesh.height + raster_tile - 1) / raster_tile),
-      triangles_(static_cast<std::size_t>(mesh.face_count())) {
+      triangles_(std::make_unique_for_overwrite<ScreenTriangle[]>(
+          static_cast<std::size_t>(mesh.face_count()))) {
     const std::int64_t faces = mesh.face_count(), piece = (faces + list_pieces - 1) / list_pieces;
     const std::size_t tiles = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
     std::vector<std::uint64_t> next(tiles * list_pieces, 0);
-    const auto for_pieces = [&](auto&& visit) {
-        parallel_for(list_pieces, [&](std::int64_t p) {
-            std::uint64_t* own = next.data() + static_cast<std::size_t>(p) * tiles;
-            for (std::int64_t i = p * piece; i < std::min(faces, (p + 1) * piece); ++i)
-                visit(own, static_cast<std::uint32_t>(i));
-        });
-    };
-    for_pieces([&](std::uint64_t* own, std::uint32_t face) {
-        triangles_[face] = set_up(mesh, face, near, reach);
-        for_tiles_of(triangles_[face], columns_, [&](std::size_t tile) { ++own[tile]; });
+    std::int64_t filled[list_pieces] = {};
+    parallel_for(list_pieces, [&](std::int64_t p) {
+        std::uint64_t* own = next.data() + static_cast<std::size_t>(p) * tiles;
+        for (std::int64_t i = p * piece; i < std::min(faces, (p + 1) * piece); ++i) {
+            if (mesh.drawn && !mesh.drawn[i]) continue;
+            ScreenTriangle& next_one = triangles_[static_cast<std::size_t>(p * piece + filled[p])];
+            if (!set_up(mesh, static_cast<std::uint32_t>(i), near, reach, next_one)) continue;
+            ++filled[p];
+            for_tiles_of(next_one, columns_, [&](std::size_t tile) { ++own[tile]; });
+        }
     });
     begin_.resize(tiles + 1);
     std::uint64_t sum = 0;
@@ -117,9 +136,13 @@ PreparedTriangles::PreparedTriangles(const ScreenMesh& mesh, double near, Reach 
     }
     begin_[tiles] = static_cast<std::uint32_t>(sum);
     listed_.resize(sum);
-    for_pieces([&](std::uint64_t* own, std::uint32_t face) {
-        for_tiles_of(triangles_[face], columns_,
-                     [&](std::size_t tile) { listed_[own[tile]++] = face; });
+    parallel_for(list_pieces, [&](std::int64_t p) {
+        std::uint64_t* own = next.data() + static_cast<std::size_t>(p) * tiles;
+        for (std::int64_t i = p * piece; i < p * piece + filled[p]; ++i) {
+            const auto place = static_cast<std::uint32_t>(i);
+            for_tiles_of(triangles_[place], columns_,
+                         [&](std::size_t tile) { listed_[own[tile]++] = place; });
+        }
     });
 }
 
@@ -134,9 +157,9 @@ void PreparedTriangles::at_points(std::span<const double> points, Visit&& visit)
             if (!(x >= 0 && x < width_ && y >= 0 && y < height_)) continue;
             const auto column = static_cast<std::size_t>(x) / raster_tile;
             const auto row = static_cast<std::size_t>(y) / raster_tile;
-            for (const std::uint32_t face :
+            for (const std::uint32_t place :
                  in_tile(row * static_cast<std::size_t>(columns_) + column))
-                visit(i, face, triangles_[face].depth_at(x, y));
+                visit(i, triangles_[place].face, triangles_[place].depth_at(x, y));
         }
     });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ScreenMesh {
     std::span<const double> positions;     // (V, 3) = (z x, z y, z)
     std::span<const std::uint32_t> faces;  // (F, 3)
     int width, height;
+    const bool* drawn = nullptr;  // null for all, or which faces (F,) there are
 
     [[nodiscard]] std::int64_t face_count() const {
         return static_cast<std::int64_t>(faces.size() / 3);
@@ -35,6 +37,7 @@ struct ScreenTriangle {
     TriangleEdges<double> edges;
     double least[3];     // a point lies inside where each w_i is greater than least[i]
     int x0, x1, y0, y1;  // pixels that it may cover: [x0, x1) x [y0, y1)
+    std::uint32_t face;
     bool front;
 
     /// The depth at a point that the triangle covers; a negative number where it does not.
@@ -60,9 +63,10 @@ public:
 
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
-    [[nodiscard]] const ScreenTriangle& triangle(std::uint32_t face) const {
-        return triangles_[face];
+    [[nodiscard]] const ScreenTriangle& triangle(std::uint32_t place) const {
+        return triangles_[place];
     }
+    /// Their places, for `triangle`.
     [[nodiscard]] std::span<const std::uint32_t> in_tile(std::size_t tile) const {
         return std::span(listed_).subspan(begin_[tile], begin_[tile + 1] - begin_[tile]);
     }
@@ -79,8 +83,10 @@ private:
     void at_points(std::span<const double> points, Visit&& visit) const;
 
     int width_, height_, columns_, rows_;
-    std::vector<ScreenTriangle> triangles_;  // by face; an empty box where it is not drawn
-    std::vector<std::uint32_t> begin_;       // by tile, one more at the end
+    // Those that may be seen, with gaps that are not written: each piece of the list of faces fills
+    // the places from its first face on.
+    std::unique_ptr<ScreenTriangle[]> triangles_;
+    std::vector<std::uint32_t> begin_;  // by tile, one more at the end
     std::vector<std::uint32_t> listed_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "kernels/kernels.h"
@@ -34,42 +35,22 @@ bool survives(const FragmentRules& rules, double z, const VisibilityBuffers& out
     return nearer;
 }
 
-/// Pixels [x0, x1) of a row outside of which an edge leaves nothing; one more on either side than
-/// rounding could ask for.
-void narrow(const ScreenTriangle& triangle, double y, int& x0, int& x1) {
-    for (int i = 0; i < 3; ++i) {
-        const Vec3<double>& line = triangle.edges.line[i];
-        const double at = -(line.y * y + line.z) / line.x;  // where the edge crosses the row
-        if (!(at > -1e9 && at < 1e9)) continue;
-        if (line.x > 0) x0 = std::max(x0, static_cast<int>(std::floor(at)) - 2);
-        if (line.x < 0) x1 = std::min(x1, static_cast<int>(std::floor(at)) + 3);
-    }
-}
-
 /// What a depth buffer alone decides: by lanes.
 void draw_spans(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
                 const TileBounds& tile, int width, const VisibilityBuffers& out) {
     DrawSpan span{};
     for (int i = 0; i < 3; ++i) {
-        span.slope[i] = triangle.edges.line[i].x;
+        for (int k = 0; k < 3; ++k) span.line[i][k] = triangle.edges.line[i][k];
         span.least[i] = triangle.least[i];
     }
     span.det = triangle.edges.det;
     span.near = rules.near, span.far = rules.far;
     span.number = number;
-    for (int y = std::max(tile.y0, triangle.y0); y < std::min(tile.y1, triangle.y1); ++y) {
-        const double center = y + 0.5;
-        span.x0 = std::max(tile.x0, triangle.x0), span.x1 = std::min(tile.x1, triangle.x1);
-        narrow(triangle, center, span.x0, span.x1);
-        if (span.x0 >= span.x1) continue;
-        for (int i = 0; i < 3; ++i)
-            span.offset[i] = triangle.edges.line[i].y * center + triangle.edges.line[i].z;
-        const std::int64_t row = std::int64_t{y} * width;
-        span.depth = out.depth + row;
-        span.face = out.face ? out.face + row : nullptr;
-        span.overdraw = out.overdraw ? out.overdraw + row : nullptr;
-        kernels().draw_span(span);
-    }
+    span.x0 = std::max(tile.x0, triangle.x0), span.x1 = std::min(tile.x1, triangle.x1);
+    span.y0 = std::max(tile.y0, triangle.y0), span.y1 = std::min(tile.y1, triangle.y1);
+    span.width = width;
+    span.depth = out.depth, span.face = out.face, span.overdraw = out.overdraw;
+    kernels().draw_span(span);
 }
 
 void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const FragmentRules& rules,
@@ -88,18 +69,17 @@ void draw_triangle(const ScreenTriangle& triangle, std::int32_t number, const Fr
 }
 
 /// Barycentrics of the faces that this call has drawn.
-void fill_barycentrics(const PreparedTriangles& triangles, std::int64_t face_count,
-                       const TileBounds& tile, int width, const VisibilityBuffers& out) {
+void fill_barycentrics(const ScreenMesh& mesh, const TileBounds& tile,
+                       const VisibilityBuffers& out) {
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x) {
             const std::size_t pixel =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(mesh.width) +
                 static_cast<std::size_t>(x);
             const std::int64_t face = std::int64_t{out.face[pixel]} - out.first_face;
-            if (face < 0 || face >= face_count) continue;
-            const auto point =
-                screen_point(triangles.triangle(static_cast<std::uint32_t>(face)).edges,
-                             Vec3<double>(x + 0.5, y + 0.5, 1));
+            if (face < 0 || face >= mesh.face_count()) continue;
+            const auto point = screen_point(mesh.edges(static_cast<std::uint32_t>(face)),
+                                            Vec3<double>(x + 0.5, y + 0.5, 1));
             out.barycentrics[2 * pixel] = point.b[1];
             out.barycentrics[2 * pixel + 1] = point.b[2];
         }
@@ -117,13 +97,17 @@ void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const Visibil
         const int y = static_cast<int>(number / triangles.columns()) * raster_tile;
         const TileBounds tile{x, std::min(x + raster_tile, mesh.width), y,
                               std::min(y + raster_tile, mesh.height)};
-        for (const std::uint32_t face : triangles.in_tile(static_cast<std::size_t>(number))) {
-            const ScreenTriangle& triangle = triangles.triangle(face);
+        if (out.cleared)
+            for (int row = tile.y0; row < tile.y1; ++row)
+                std::fill_n(out.depth + std::int64_t{row} * mesh.width + tile.x0, tile.x1 - tile.x0,
+                            std::numeric_limits<double>::infinity());
+        for (const std::uint32_t place : triangles.in_tile(static_cast<std::size_t>(number))) {
+            const ScreenTriangle& triangle = triangles.triangle(place);
             if (!is_culled(rules.cull, triangle.front))
-                draw(triangle, out.first_face + static_cast<std::int32_t>(face), rules, tile,
-                     mesh.width, out);
+                draw(triangle, out.first_face + static_cast<std::int32_t>(triangle.face), rules,
+                     tile, mesh.width, out);
         }
-        if (out.face) fill_barycentrics(triangles, mesh.face_count(), tile, mesh.width, out);
+        if (out.face) fill_barycentrics(mesh, tile, out);
     });
 }
 

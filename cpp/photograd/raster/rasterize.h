@@ -11,7 +11,8 @@
 
 namespace photograd {
 
-/// The buffers, (H, W) each; drawn onto, so that several meshes may follow one another.
+/// The buffers, (H, W) each; drawn onto, so that several meshes may follow one another. Those that
+/// are not `cleared` hold a picture, or the numbers of an empty one.
 struct VisibilityBuffers {
     std::int32_t* face;       // -1 where nothing is seen; null with `barycentrics` for depth alone
     double* barycentrics;     // (H, W, 2): weights of the second and third corner
@@ -20,6 +21,7 @@ struct VisibilityBuffers {
     std::int32_t first_face;  // added to the numbers of faces
     std::int32_t* overdraw;   // null, or how many fragments lay within [near, far]
     const double* behind;     // null, or depths (H, W): only what lies further away is drawn
+    bool cleared;             // whether `depth` is infinite everywhere before anything is drawn
 };
 
 void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const VisibilityBuffers& out);

@@ -43,7 +43,6 @@ from photograd.commands.trace import CameraOption, SceneArgument, SizeOption, lo
 from photograd.errors import RangeError, message
 from photograd.frame.against import Comparison, compare_with_paths
 from photograd.frame.detail import SceneDetail
-from photograd.frame.dithering import dither
 from photograd.frame.graph import FrameResult, PassGraph
 from photograd.frame.options import FrameOptions
 from photograd.frame.panels import PANELS, panels
@@ -116,7 +115,7 @@ def frame(
     if detail:
         described = SceneDetail(described).at(described.camera, detail)
     graph, result, report = _draw(described, options)
-    _write(result, out, seed if dithered else None)
+    _write(result, out)
     for name in shown:
         _write_buffer(graph, result, name, out.with_suffix(f".{name}.png"))
     report = {"out": out} | report
@@ -162,13 +161,10 @@ def _write_buffer(graph: PassGraph, result: FrameResult, name: str, path: Path) 
         _write_sheet(path, list(panels(result, name).values()))
 
 
-def _write(result: FrameResult, out: Path, seed: int | None) -> None:
-    """The picture; with a seed, dithered."""
+def _write(result: FrameResult, out: Path) -> None:
     if out.suffix.lower() in LINEAR_SUFFIXES:
         write_radiance(out, result["radiance"].astype(np.float32))
     display = srgb_encode(np.clip(result["display"], 0.0, 1.0))
-    if seed is not None:
-        display = dither(display, seed=seed)
     write_png(out.with_suffix(".png"), display.astype(np.float32))
 
 

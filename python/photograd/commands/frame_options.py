@@ -154,6 +154,8 @@ def options_of(given: Mapping[str, Any]) -> FrameOptions:
         gather_samples=given["gather"],
         fog_color=_three_numbers("--fog-color", given["fog_color"]),
         bloom_weights=(bloom / BLOOM_LEVELS,) * BLOOM_LEVELS if bloom else (),
+        dither_levels=256 if given["dithered"] else 0,
+        dither_seed=given["seed"],
     )
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from photograd.capture.camera import Camera
 from photograd.frame.disks import Disks, scene_disks
-from photograd.frame.gathering import gather, nearest_shadow, sky_share
+from photograd.frame.emitters import Emitters, patch_share
+from photograd.frame.gathering import ReflectanceSamples, gather, nearest_shadow, sky_share
 from photograd.frame.gbuffer import GBuffer, draw_surfaces, fill_gbuffer
 from photograd.frame.horizon import horizon_occlusion
 from photograd.frame.light_views import background, delta_lights, sky_lights, surface_lights
@@ -29,9 +30,10 @@ class LightPasses:
     def __init__(self, scene: FrameScene, options: FrameOptions) -> None:
         self.scene = scene
         self.options = options
-        self.lights = delta_lights(scene)
-        if options.surface_points:
-            self.lights += surface_lights(scene, options.surface_points)
+        self.patches = (
+            surface_lights(scene, options.surface_points) if options.surface_points else []
+        )
+        self.lights = [*delta_lights(scene), *self.patches]
         self.sky = sky_lights(scene, options.sky_directions) if options.sky_directions else []
 
     def surfaces(self, camera: Camera) -> tuple[Visibility, GBuffer]:
@@ -75,10 +77,32 @@ class LightPasses:
         """Light of points, spots, directions and surfaces that emit."""
         settings = self.options.shadows
         if self.options.shading == "deferred":
-            return light_surfaces(self.scene, surfaces, self.lights, shadows, settings)
+            return self._direct(surfaces, shadows)
         nearest = visibility.depth if self.options.depth_prepass else None
         camera = surfaces.camera
         return light_forward(self.scene, camera, self.lights, shadows, settings, nearest)[0]
+
+    def _direct(self, surfaces: GBuffer, shadows: Shadows) -> Array:
+        """Where emitters are gathered as well, points on them and samples share the light."""
+        settings = self.options.shadows
+        if not self._gathers_emitters:
+            return light_surfaces(self.scene, surfaces, self.lights, shadows, settings)
+        deltas = self.lights[: len(self.lights) - len(self.patches)]
+        out = light_surfaces(self.scene, surfaces, deltas, shadows, settings)
+        for patch in self.patches:
+            share = patch_share(self.scene, surfaces, patch, self.options.gather_samples)
+            out += light_surfaces(self.scene, surfaces, [patch], shadows, settings, share)
+        return out
+
+    @property
+    def _gathers_emitters(self) -> bool:
+        deferred = self.options.shading == "deferred"
+        return bool(self.options.gather_samples and self.patches and deferred)
+
+    @cached_property
+    def emitters(self) -> Emitters:
+        """Of the scene, found when they are first needed."""
+        return Emitters(self.scene, self.patches)
 
     def sky_light(self, surfaces: GBuffer, shadows: Shadows, occlusion: Array) -> Array:
         """Where the reflectance is sampled as well, both samples share the light."""
@@ -108,37 +132,42 @@ class LightPasses:
         return follow_screen_rays(depth, surfaces.shading, surfaces.camera, wi, rays)
 
     def gather(self, surfaces: GBuffer, direct: Array, sky_light: Array, shadows: Shadows) -> Array:
-        """Light of other pixels, and of the sky behind them."""
-        if not self.options.gather_samples:
+        """Light of other pixels, of the sky behind them, and of surfaces that emit."""
+        samples = self.options.gather_samples
+        if not samples:
             return np.zeros_like(direct)
         with_maps = self.options.sky_visibility == "shadow_maps"
 
         def visible(wi: Array) -> Array:
             return nearest_shadow(surfaces, wi, self.sky, shadows, self.options.shadows)
 
-        light = direct + sky_light if self.options.gather_frame else np.zeros_like(direct)
+        def emitted(found: ReflectanceSamples) -> Array:
+            return self.emitters.arriving(surfaces, found, samples, shadows, self.options.shadows)
+
+        light = direct + sky_light if self.options.gather_frame else None
         return gather(
             self.scene,
             surfaces,
             light,
             self.options.screen_rays,
-            samples=self.options.gather_samples,
-            sky_directions=self.options.sky_directions,
+            samples=samples,
+            sky_directions=self.options.sky_directions if self.sky else 0,
             sky_visibility=visible if with_maps and self.sky else None,
+            emitted=emitted if self._gathers_emitters else None,
         )
 
     def background(self, camera: Camera, surfaces: GBuffer) -> Array:
         """Radiance behind everything, where no surface is."""
-        found = background(self.scene.scene, camera, surfaces.covered)
-        return found.astype(self.scene.dtype)
+        return background(self.scene.scene, camera, surfaces.covered, dtype=self.scene.dtype)
 
     def opaque(
         self, surfaces: GBuffer, direct: Array, sky_light: Array, gathered: Array, behind: Array
     ) -> Array:
-        """The sum of all light, before the background."""
-        lit = surfaces.emission + direct + sky_light + gathered
-        out: Array = np.where(surfaces.covered[..., None], lit, behind)
-        return out
+        """The sum of all light, before the background: no pixel has both."""
+        lit: Array = surfaces.emission + direct
+        for light in (sky_light, gathered, behind):
+            lit += light
+        return lit
 
     def layers(
         self, camera: Camera, visibility: Visibility, opaque: Array, shadows: Shadows

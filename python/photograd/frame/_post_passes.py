@@ -11,6 +11,7 @@ from photograd.capture.camera import Camera
 from photograd.frame.antialiasing import TemporalAntialiasing, fxaa
 from photograd.frame.bloom import bloom
 from photograd.frame.depth_of_field import depth_of_field
+from photograd.frame.dithering import dither
 from photograd.frame.fog import add_fog
 from photograd.frame.gbuffer import GBuffer
 from photograd.frame.lens_effects import chromatic_aberration, vignette
@@ -117,6 +118,15 @@ class PostPasses:
             return toned
         encoded = srgb_encode(np.clip(toned, 0.0, 1.0)).astype(toned.dtype)
         return srgb_decode(fxaa(encoded)).astype(toned.dtype)
+
+    def dither(self, smoothed: Array) -> Array:
+        """The same, linear still, of the levels that a display has."""
+        levels = self.options.dither_levels
+        if not levels:
+            return smoothed
+        encoded = srgb_encode(np.clip(smoothed, 0.0, 1.0)).astype(smoothed.dtype)
+        rounded = dither(encoded, levels=levels, seed=self.options.dither_seed)
+        return srgb_decode(rounded).astype(smoothed.dtype)
 
 
 def show(radiance: Array, options: FrameOptions) -> Array:

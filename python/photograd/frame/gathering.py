@@ -1,7 +1,10 @@
 """Light gathered from directions that the reflectance of each surface chooses.
 
 A ray through the frame's depths (`follow_screen_rays`) either meets a surface that the frame shows,
-whose light it brings (screen-space irradiance and reflections in one), or it brings the sky.
+whose light it brings (screen-space irradiance and reflections in one), or it brings the sky. The
+frame does not say how thick surfaces are; where shadow maps tell which part of the sky arrives,
+they decide, and the frame is asked for the light of the rest alone.
+
 Directions from which the sky is sampled as well are weighted with both densities by the balance
 heuristic [Veach1995].
 """
@@ -89,12 +92,13 @@ def reflectance_pdf(scene: FrameScene, surfaces: GBuffer, wi: Array) -> Array:
 def gather(
     scene: FrameScene,
     surfaces: GBuffer,
-    light: Array,
+    light: Array | None,
     rays: ScreenRaySettings,
     *,
     samples: int,
     sky_directions: int = 0,
     sky_visibility: Callable[[Array], Array] | None = None,
+    emitted: Callable[[ReflectanceSamples], Array] | None = None,
 ) -> Array:
     """Light (H, W, 3) that surfaces send to the viewer, of what they reflect of the frame and sky.
 
@@ -102,33 +106,45 @@ def gather(
         scene: of the surfaces.
         surfaces: of a G-buffer.
         light: (H, W, 3) that the frame's surfaces send on, to be gathered; without their own
-            emission where points stand for that.
+            emission where points stand for that. None for none.
         rays: how far and how finely the frame is looked through.
         samples: directions a pixel.
         sky_directions: of `sky_lights`, whose samples these are weighted against; 0 leaves the sky
             out.
-        sky_visibility: tells for wi (H, W, 3) which part (H, W) of the sky arrives from there
-            where the frame hides none; None for all of it.
+        sky_visibility: tells for wi (H, W, 3) which part (H, W) of the sky arrives from there;
+            None for all of it where the frame is not in the way.
+        emitted: radiance (H, W, 3) of surfaces that emit along samples, weighted against the points
+            that stand for them; None for none.
 
     Raises:
         DtypeError, ShapeError, RangeError: other arrays, or samples below 1.
     """
     call = Arguments("gather", scene.dtype)
     samples = call.integer("samples", samples, low=1, high=4096)
-    light = call.array("light", light, surfaces.position.shape)
-    depth, camera = surfaces.depth.astype(scene.dtype), surfaces.camera
-    out = np.zeros_like(light)
+    if light is not None:
+        light = call.array("light", light, surfaces.position.shape)
+    out = np.zeros_like(surfaces.position)
     for k in range(samples):
         found = sample_reflectance(scene, surfaces, _uniform(surfaces, k, samples))
-        hit = follow_screen_rays(depth, surfaces.shading, camera, found.wi, rays)
-        arriving = np.where(hit[..., None] >= 0, light.reshape(-1, 3)[np.maximum(hit, 0)], 0)
+        arriving = np.zeros_like(out)
+        if light is not None or (sky_directions and sky_visibility is None):
+            hit = _meet(scene, surfaces, found.wi, rays)
+            if light is not None:
+                arriving = np.where(hit[..., None] >= 0, light.reshape(-1, 3)[hit], 0)
         if sky_directions:
-            part = _sky(scene, found, samples, sky_directions)
-            if sky_visibility is not None:
-                part *= sky_visibility(found.wi)[..., None]
-            arriving = np.where(hit[..., None] >= 0, arriving, part)
+            part = (hit < 0) if sky_visibility is None else sky_visibility(found.wi)
+            part = part[..., None].astype(out.dtype)
+            arriving = (1 - part) * arriving + part * _sky(scene, found, samples, sky_directions)
+        if emitted is not None:
+            arriving = arriving + emitted(found)
         out += found.weight * arriving / scene.dtype.type(samples)
     return out
+
+
+def _meet(scene: FrameScene, surfaces: GBuffer, wi: Array, rays: ScreenRaySettings) -> Array:
+    """(H, W) pixels whose surfaces are met, negative for none."""
+    depth = surfaces.depth.astype(scene.dtype)
+    return follow_screen_rays(depth, surfaces.shading, surfaces.camera, wi, rays)
 
 
 def sky_share(scene: FrameScene, surfaces: GBuffer, direction: SkyDirection, samples: int) -> Array:

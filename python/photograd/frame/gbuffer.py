@@ -93,9 +93,6 @@ def fill_gbuffer(scene: FrameScene, camera: Camera, visibility: Visibility) -> G
     call = Arguments("fill_gbuffer")
     size = (camera.height, camera.width)
     face = call.array("visibility.face", visibility.face, size, dtype=np.int32)
-    visible = face >= 0
-    shape = np.where(visible, scene.shape[face], np.int32(-1)).astype(np.int32)
-    primitive = np.where(visible, scene.primitive[face], np.int32(-1)).astype(np.int32)
     dtype = scene.dtype
     textured = any(material.textures for material in scene.scene.materials.values())
     width = _widest(scene) if textured else 0
@@ -115,8 +112,9 @@ def fill_gbuffer(scene: FrameScene, camera: Camera, visibility: Visibility) -> G
     call.run(
         _core.fill_gbuffer,
         **arguments,
-        shape=shape.reshape(-1),
-        primitive=primitive.reshape(-1),
+        face=face.reshape(-1),
+        shape=scene.shape,
+        primitive=scene.primitive,
         gbuffer=out.flat(),
     )
     return out

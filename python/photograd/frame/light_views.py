@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.frame.scene import FrameScene
 from photograd.frame.shadows import cone_view, cube_views, parallel_view
@@ -27,6 +29,7 @@ from photograd.lights import (
     SunLight,
     TriangleLight,
 )
+from photograd.transport.core_arrays import camera_numbers
 from photograd.transport.scene import Scene
 from photograd.types import Array, FloatArray
 
@@ -117,12 +120,16 @@ class PatchLight(FrameLight):
         name: of the surface, and the number of the part.
         position, normal: (3,) each, in the world.
         power: (3,) radiance times area, W/sr along the normal.
+        shape: of the core, its number.
+        density: points that stand for the surface, per square meter.
     """
 
     name: str
     position: FloatArray
     normal: FloatArray
     power: FloatArray
+    shape: int
+    density: float
 
     def arriving(self, points: Array) -> tuple[Array, Array]:
         """Irradiance falls with the squared distance, and with the cosine at the emitter."""
@@ -179,21 +186,29 @@ def infinite_lights(scene: Scene) -> dict[str, Light]:
     return found
 
 
-def background(scene: Scene, camera: Camera, hidden: Array | None = None) -> Array:
-    """Radiance (H, W, 3) of the lights at infinity, as a camera sees them, float64.
+def background(
+    scene: Scene, camera: Camera, hidden: Array | None = None, *, dtype: npt.DTypeLike = np.float64
+) -> Array:
+    """Radiance (H, W, 3) of the lights at infinity, as a camera sees them.
 
     Args:
         scene: whose lights and environment are looked at.
         camera: of the picture.
         hidden: (H, W) bool, where it is not looked for, and 0; None looks everywhere.
+        dtype: float32 or float64, of the directions and the radiance.
     """
-    sky = np.zeros((camera.height * camera.width, 3))
-    lights = infinite_lights(scene).values()
+    sky = np.zeros((camera.height * camera.width, 3), dtype)
+    lights = list(infinite_lights(scene).values())
     open_pixels = np.arange(len(sky)) if hidden is None else np.flatnonzero(~hidden)
     if lights and len(open_pixels):
-        origins, directions = camera.rays(open_pixels)
+        directions = np.empty((len(open_pixels), 3), sky.dtype)
+        _core.view_directions(camera_numbers(camera), open_pixels, directions)
+        origins = np.broadcast_to(camera.position.astype(sky.dtype), directions.shape).copy()
+        found = np.zeros_like(directions)
         for light in lights:
-            sky[open_pixels] += light.L(origins, directions)
+            core, leading = light.core_call(sky.dtype)
+            found += core.radiance(*leading, origins, directions)
+        sky[open_pixels] = found
     return sky.reshape(camera.height, camera.width, 3)
 
 
@@ -206,7 +221,7 @@ def delta_lights(scene: FrameScene) -> list[FrameLight]:
     ]
 
 
-def surface_lights(scene: FrameScene, count: int) -> list[FrameLight]:
+def surface_lights(scene: FrameScene, count: int) -> list[PatchLight]:
     """Points on the surfaces that emit, by their power; textures count by their mean.
 
     Args:
@@ -214,17 +229,18 @@ def surface_lights(scene: FrameScene, count: int) -> list[FrameLight]:
         count: of points in all, at least one for each surface.
     """
     numbers = scene.tracer.core_arguments(scene.scene.camera)["emission"].astype(np.float64)
-    found: list[tuple[str, FloatArray, Array]] = []  # name, triangles (T, 3, 3), radiance
+    # Name, number, triangles (T, 3, 3), radiance.
+    found: list[tuple[str, int, FloatArray, Array]] = []
     for number, radiance in enumerate(numbers):
         if radiance.any():
             faces = scene.faces[scene.shape == number]
             name = scene.tracer.core_shapes[scene.tracer.core_owner[number]].name
-            found.append((name, scene.vertices[faces], radiance))
-    powers = np.array([_areas(t).sum() * radiance.sum() for _, t, radiance in found])
-    lights: list[FrameLight] = []
-    for (name, triangles, radiance), power in zip(found, powers, strict=True):
+            found.append((name, number, scene.vertices[faces], radiance))
+    powers = np.array([_areas(t).sum() * radiance.sum() for _, _, t, radiance in found])
+    lights: list[PatchLight] = []
+    for (name, number, triangles, radiance), power in zip(found, powers, strict=True):
         share = max(1, round(count * float(power / powers.sum())))
-        lights += _patches(name, triangles, radiance, share)
+        lights += _patches(name, number, triangles, radiance, share)
     return lights
 
 
@@ -233,11 +249,14 @@ def _areas(triangles: FloatArray) -> FloatArray:
     return np.asarray(0.5 * np.linalg.norm(edges, axis=1))
 
 
-def _patches(name: str, triangles: FloatArray, radiance: Any, count: int) -> list[FrameLight]:
+def _patches(
+    name: str, shape: int, triangles: FloatArray, radiance: Any, count: int
+) -> list[PatchLight]:
     """Points by area, spread evenly: a sequence of low discrepancy over the list of triangles."""
     areas = _areas(triangles)
     ends = np.cumsum(areas)
-    lights: list[FrameLight] = []
+    lights: list[PatchLight] = []
+    density = count / float(ends[-1])
     for i in range(count):
         at = (i + 0.5) / count * ends[-1]
         k = int(min(np.searchsorted(ends, at, side="right"), len(ends) - 1))
@@ -249,5 +268,6 @@ def _patches(name: str, triangles: FloatArray, radiance: Any, count: int) -> lis
         normal = np.cross(b - a, c - a)
         normal /= np.linalg.norm(normal)
         power = np.asarray(radiance) * ends[-1] / count
-        lights.append(PatchLight(f"{name}.{i}", a + u * (b - a) + v * (c - a), normal, power))
+        point = a + u * (b - a) + v * (c - a)
+        lights.append(PatchLight(f"{name}.{i}", point, normal, power, shape, density))
     return lights

@@ -7,6 +7,7 @@ from typing import Literal
 
 from photograd._arrays import Arguments
 from photograd._checks import require_choices
+from photograd.errors import RangeError, message
 from photograd.frame.horizon import HorizonSettings
 from photograd.frame.meshlets import Culling
 from photograd.frame.occlusion import SsaoSettings
@@ -44,8 +45,10 @@ class FrameOptions:
         disk_edge: meters; faces with longer edges become several disks.
         screen_rays: of all rays in screen space.
         gather_samples: directions a pixel in which the reflectance looks for light that the frame
-            shows, or for the sky behind it: screen-space irradiance and reflections. 0 for none.
-        gather_frame: whether light that the frame shows is gathered; if not, the sky alone.
+            shows, or for the sky behind it: screen-space irradiance and reflections; and, with
+            deferred shading, for surfaces that emit. 0 for none.
+        gather_frame: whether light that the frame shows is gathered; if not, that of the sky and of
+            surfaces that emit alone.
         transparency: how surfaces that cover a part are blended: "peeled", exactly, "sorted" by
             shapes, or "weighted", in any order.
         layers: of such surfaces; what lies behind further ones is left out.
@@ -63,6 +66,9 @@ class FrameOptions:
         tone_curve: of the display; None shows radiance as it is.
         exposure: in stops.
         fxaa: whether edges of the display are blended afterwards.
+        dither_levels: of the display's encoded colors, to which they are rounded after noise of one
+            step; 0 for none.
+        dither_seed: of that noise.
 
     Raises:
         DtypeError, RangeError: a value of another kind, or out of range.
@@ -98,6 +104,8 @@ class FrameOptions:
     tone_curve: ToneCurve | None = None
     exposure: float = 0.0
     fxaa: bool = False
+    dither_levels: int = 0
+    dither_seed: int = 0
 
     def __post_init__(self) -> None:
         require_choices(self)
@@ -118,3 +126,6 @@ class FrameOptions:
         call.number("aberration", self.aberration, above=-0.5, below=0.5)
         call.number("vignette", self.vignette, low=0.0, high=1.0)
         call.number("exposure", self.exposure, low=-64.0, high=64.0)
+        if call.integer("dither_levels", self.dither_levels, low=0, high=65536) == 1:
+            raise RangeError(message("FrameOptions", "dither_levels", "0, or 2 to 65536", "1"))
+        call.integer("dither_seed", self.dither_seed, low=0, high=2**64 - 1)

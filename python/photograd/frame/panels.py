@@ -17,7 +17,7 @@ from photograd.types import Array
 PANELS = (
     *("visibility", "gbuffer", "shadows", "occlusion", "direct", "sky_light", "gathered"),
     *("background", "opaque", "layered", "fogged", "focused", "radiance", "bloom", "lens"),
-    *("toned", "display"),
+    *("toned", "smoothed", "display"),
 )
 """Buffers that can be shown."""
 COLORS = np.array(

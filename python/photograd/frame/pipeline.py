@@ -24,7 +24,8 @@ Buffers, in the order in which they are made:
     radiance        of the pixels
     accumulated     the mean over frames; with it, history: what the next frame goes on with
     bloom, lens     with bloom; with the lens's aberration and vignette
-    toned, display  tone mapped; with edges blended
+    toned, smoothed tone mapped; with edges blended
+    display         the same, dithered where options ask for it
 
 Motion needs a second input, "last": the `LastFrame`.
 """
@@ -101,5 +102,6 @@ def _shown(post: PostPasses, moves: bool) -> list[Pass]:
         Pass("bloom", post.bloom, (whole,), ("bloom",)),
         Pass("lens", post.lens, ("camera", "bloom"), ("lens",)),
         Pass("tone map", post.tone_map, ("lens",), ("toned",)),
-        Pass("fxaa", post.fxaa, ("toned",), ("display",)),
+        Pass("fxaa", post.fxaa, ("toned",), ("smoothed",)),
+        Pass("dither", post.dither, ("smoothed",), ("display",)),
     ]

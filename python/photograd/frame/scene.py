@@ -133,43 +133,50 @@ class FrameScene:
             shape: of the core, which alone is drawn; None draws all.
             culling: of clusters of triangles.
         """
-        numbers = self._numbers(kinds, camera, culling)
+        drawn = self._drawn(kinds, camera, culling)
         if shape is not None:
-            numbers = numbers[self.shape[numbers] == shape]
-        found = rasterize(
+            drawn &= self.shape == shape
+        return rasterize(
             project(self.vertices, camera),
-            self.faces[numbers],
+            self.faces,
             (camera.height, camera.width),
             RasterOptions(near=self.near),
             behind=behind,
+            drawn=drawn,
         )
-        if len(numbers) < len(self.faces):
-            visible = found.covered
-            found.face[visible] = numbers[found.face[visible]]
-        return found
 
-    def draw_depth(self, camera: Camera, *kinds: str) -> FloatArray:
-        """The depths (H, W) of `draw` alone, in less time.
+    def draw_depth(self, camera: Camera, depth: FloatArray, *kinds: str) -> None:
+        """Write the depths (H, W) of `draw` alone, in less time.
 
         Args:
             camera: of the picture.
+            depth: (H, W) float64, all of it is written.
             kinds: of the faces that are drawn; masks are drawn whole.
         """
-        depth = np.full((camera.height, camera.width), np.inf)
-        numbers = self._numbers(kinds, camera, "frustum")
-        positions, faces = project(self.vertices, camera), self.faces[numbers]
-        Arguments("FrameScene.draw_depth").run(
-            _core.rasterize_depth, positions, faces, self.near, np.inf, depth
+        call = Arguments("FrameScene.draw_depth")
+        size = (camera.height, camera.width)
+        depth = call.array("depth", depth, size, dtype=np.float64, finite=False)
+        drawn = self._drawn(kinds, camera, "frustum")
+        call.run(
+            _core.rasterize_depth,
+            project(self.vertices, camera),
+            self.faces,
+            self.near,
+            np.inf,
+            depth,
+            drawn,
         )
-        return depth
 
-    def _numbers(self, kinds: tuple[str, ...], camera: Camera, culling: Culling) -> Array:
-        """Of the faces of these kinds that are not culled, growing."""
-        drawn = np.isin(self.kind, [KINDS.index(kind) for kind in kinds])
+    def _drawn(self, kinds: tuple[str, ...], camera: Camera, culling: Culling) -> Array:
+        """(F,) bool: faces of these kinds that are not culled."""
+        is_drawn = np.zeros(len(KINDS), np.bool_)
+        is_drawn[[KINDS.index(kind) for kind in kinds]] = True
+        drawn = is_drawn[self.kind]
         if culling != "none":
             visible = self.meshlets.visible(camera, self.near, culling)
-            drawn &= visible[self.meshlets.number]
-        return np.flatnonzero(drawn)
+            if not visible.all():
+                drawn &= visible[self.meshlets.number]
+        return drawn
 
 
 def _refuse_media(scene: Scene) -> None:

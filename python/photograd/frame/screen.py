@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.types import Array
 
@@ -34,13 +35,8 @@ def screen_arguments(
 
 
 def along_camera_axes(vectors: Array, camera: Camera) -> Array:
-    """Components of vectors (..., 3) of the world along the axes of a camera.
-
-    Axis by axis: the same bits on every processor, which a matrix product need not give.
-    """
-    rotation = camera.world_from_camera[:3, :3].astype(vectors.dtype)
-    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
-    out = np.empty_like(vectors)
-    for k in range(3):
-        out[..., k] = x * rotation[0, k] + y * rotation[1, k] + z * rotation[2, k]
+    """Components of vectors (..., 3) of the world along the axes of a camera."""
+    rotation = np.ascontiguousarray(camera.world_from_camera[:3, :3], vectors.dtype)
+    out = np.empty(vectors.shape, vectors.dtype)
+    _core.turn_vectors(vectors.reshape(-1, 3), rotation, out.reshape(-1, 3))
     return out

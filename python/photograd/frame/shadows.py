@@ -16,6 +16,7 @@ from photograd._checks import require_types
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
+from photograd.errors import ShapeError, message
 from photograd.frame.gbuffer import draw_surfaces
 from photograd.frame.scene import KINDS, FrameScene
 from photograd.types import Array, FloatArray
@@ -80,11 +81,17 @@ def draw_shadow_map(scene: FrameScene, cameras: tuple[Camera, ...]) -> ShadowMap
     """
     call = Arguments("draw_shadow_map")
     call.integer("len(cameras)", len(cameras), low=1, high=6)
+    sizes = {(camera.height, camera.width) for camera in cameras}
+    if len(sizes) > 1:
+        got = ", ".join(f"{height} x {width}" for height, width in sorted(sizes))
+        raise ShapeError(message("draw_shadow_map", "cameras", "views of one size", got))
     kinds = ("opaque", "mask", "glass")
     if (scene.kind == KINDS.index("mask")).any():
         depths = np.stack([draw_surfaces(scene, camera, *kinds)[0].depth for camera in cameras])
     else:
-        depths = np.stack([scene.draw_depth(camera, *kinds) for camera in cameras])
+        depths = np.empty((len(cameras), *sizes.pop()))
+        for camera, depth in zip(cameras, depths, strict=True):
+            scene.draw_depth(camera, depth, *kinds)
     call.array("depths", depths, ("K", "S", "S"), finite=False)
     return ShadowMap(cameras, depths)
 

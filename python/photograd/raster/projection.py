@@ -15,6 +15,7 @@ import numpy as np
 from photograd_course.portable_math import matmul
 
 from photograd._arrays import Arguments
+from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.types import Array, FloatArray
@@ -53,10 +54,10 @@ def project(vertices: Array, camera: Camera) -> FloatArray:
         DtypeError, ShapeError, RangeError: vertices that are not finite numbers (V, 3).
     """
     vertices = Arguments("project", np.float64).array("vertices", vertices, ("V", 3))
-    local = _in_camera(vertices, camera)
-    x = camera.fx * local[:, 0] + camera.cx * local[:, 2]
-    y = camera.fy * local[:, 1] + camera.cy * local[:, 2]
-    return np.stack([x, y, local[:, 2]], axis=-1)
+    positions = np.empty_like(vertices)
+    intrinsics = (camera.fx, camera.fy, camera.cx, camera.cy)
+    _core.project(vertices, camera_from_world(camera), intrinsics, positions)
+    return positions
 
 
 def project_backward(
@@ -74,15 +75,15 @@ def project_backward(
     call = Arguments("project_backward", np.float64)
     vertices = call.array("vertices", vertices, ("V", 3))
     d_positions = call.array("d_positions", d_positions, ("V", 3))
-    local = _in_camera(vertices, camera)
+    pose = camera_from_world(camera)
+    local = matmul(vertices, pose[:, :3].T) + pose[:, 3]
     d_x, d_y, d_z = d_positions.T
     d_local = np.stack(
         [camera.fx * d_x, camera.fy * d_y, camera.cx * d_x + camera.cy * d_y + d_z], axis=-1
     )
-    rotation = invert_rigid(camera.world_from_camera)[:3, :3]
     with_one = np.concatenate([vertices, np.ones_like(vertices[:, :1])], axis=1)
     return ProjectionGradients(
-        vertices=matmul(d_local, rotation),
+        vertices=matmul(d_local, pose[:, :3]),
         camera_from_world=np.einsum("vi,vj->ij", d_local, with_one),
         fx=float((d_x * local[:, 0]).sum()),
         fy=float((d_y * local[:, 1]).sum()),
@@ -91,8 +92,6 @@ def project_backward(
     )
 
 
-def _in_camera(vertices: FloatArray, camera: Camera) -> FloatArray:
-    """(V, 3) in the camera's frame, meters."""
-    camera_from_world = invert_rigid(camera.world_from_camera)
-    found: FloatArray = matmul(vertices, camera_from_world[:3, :3].T) + camera_from_world[:3, 3]
-    return found
+def camera_from_world(camera: Camera) -> FloatArray:
+    """(3, 4) rotation and translation into a camera's frame."""
+    return invert_rigid(camera.world_from_camera)[:3]
