@@ -20,7 +20,7 @@ from photograd.commands.view_photographs import (
     display_pixels,
     fov_that_shows,
     nothing,
-    photograph_seen,
+    photograph_through,
 )
 
 pytestmark = pytest.mark.usefixtures("core")
@@ -75,17 +75,19 @@ def test_the_whole_photograph_is_on_the_page() -> None:
 def test_a_photograph_seen_by_its_own_camera_is_itself(photographs: Photographs) -> None:
     view = photographs.views[1]
     pixels = display_pixels(view)
-    seen, inside = photograph_seen(pixels, view.camera, view.camera)
+    seen, inside = photograph_through(pixels, view.camera, view.camera)
     np.testing.assert_array_equal(seen, pixels)
     assert inside.all()
     wide = replace(view.camera, width=48, cx=view.camera.cx + 12)
-    seen, inside = photograph_seen(pixels, view.camera, wide)
+    seen, inside = photograph_through(pixels, view.camera, wide)
     np.testing.assert_array_equal(seen[:, 12:36], pixels)
     assert inside.sum() == 24 * 24
     pose = view.camera.world_from_camera.copy()
     pose[:3, :3] = pose[:3, :3] @ np.diag([-1.0, 1, -1])
-    _, inside = photograph_seen(pixels, view.camera, replace(view.camera, world_from_camera=pose))
-    assert not inside.any()  # behind it
+    _, inside = photograph_through(
+        pixels, view.camera, replace(view.camera, world_from_camera=pose)
+    )
+    assert not inside.any()
 
 
 def test_layers_lie_over_beside_and_against() -> None:

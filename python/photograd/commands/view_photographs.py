@@ -144,7 +144,7 @@ def display_pixels(view: View) -> Array:
     return np.asarray(color * alpha + (1 - alpha))
 
 
-def photograph_seen(
+def photograph_through(
     pixels: Array, photograph: Camera, camera: Camera
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
     """A photograph as a camera at its place sees it (H, W, 3), and where it has pixels (H, W).
@@ -167,7 +167,7 @@ def photograph_seen(
     return found.reshape(*size, 3), inside.reshape(size)
 
 
-def combined(layer: str, rendered: Array, seen: Array, inside: NDArray[np.bool_]) -> FloatArray:
+def combined(layer: str, rendered: Array, photo: Array, inside: NDArray[np.bool_]) -> FloatArray:
     """A layer (H, W, 3) of `LAYERS`: the photograph, half of it, or the mean absolute difference.
 
     The scale of differences ends at a quantile of them, rounded up, as that of `photograd
@@ -176,48 +176,48 @@ def combined(layer: str, rendered: Array, seen: Array, inside: NDArray[np.bool_]
     Args:
         layer: of `LAYERS`.
         rendered: (H, W, 3) display values.
-        seen: (H, W, 3) of the photograph.
+        photo: (H, W, 3) of the photograph.
         inside: (H, W) where it has pixels.
     """
     if layer == "difference":
-        return difference_colors(rendered, seen, inside)
+        return difference_colors(rendered, photo, inside)
     shown = inside.copy()
     if layer == "split":
         shown[:, shown.shape[1] // 2 :] = False
-    found = np.where(shown[..., None], seen, rendered)
+    found = np.where(shown[..., None], photo, rendered)
     if layer == "split":
         middle = found.shape[1] // 2
         found[:, max(middle - 1, 0) : middle] = 1.0
     return np.asarray(found, np.float64)
 
 
-def difference_limit(rendered: Array, seen: Array, inside: NDArray[np.bool_]) -> float:
+def difference_limit(rendered: Array, photo: Array, inside: NDArray[np.bool_]) -> float:
     """The end of the scale of mean absolute differences.
 
     Args:
         rendered: (H, W, 3) display values.
-        seen: (H, W, 3) of the photograph.
+        photo: (H, W, 3) of the photograph.
         inside: (H, W) where it has pixels.
     """
     from photograd_course.viz.scale import nice_limit
 
-    difference = np.abs(rendered - seen).mean(axis=2)[inside]
+    difference = np.abs(rendered - photo).mean(axis=2)[inside]
     return nice_limit(float(np.quantile(difference, QUANTILE)) if difference.size else 0.0)
 
 
-def difference_colors(rendered: Array, seen: Array, inside: NDArray[np.bool_]) -> FloatArray:
+def difference_colors(rendered: Array, photo: Array, inside: NDArray[np.bool_]) -> FloatArray:
     """(H, W, 3) colors of mean absolute differences, gray where there is none.
 
     Args:
         rendered: (H, W, 3) display values.
-        seen: (H, W, 3) of the photograph.
+        photo: (H, W, 3) of the photograph.
         inside: (H, W) where it has pixels.
     """
     import matplotlib as mpl
     from matplotlib.colors import to_rgb
     from photograd_course.viz import style
 
-    share = np.abs(rendered - seen).mean(axis=2) / difference_limit(rendered, seen, inside)
+    share = np.abs(rendered - photo).mean(axis=2) / difference_limit(rendered, photo, inside)
     colors = np.asarray(mpl.colormaps[style.MAGNITUDE_MAP](np.clip(share, 0, 1)))
     found: FloatArray = colors[..., :3]
     found[~inside] = to_rgb(style.MISSING)
@@ -271,11 +271,11 @@ class Overlay:
                 yield picture
                 continue
             at = resized(camera, picture.color.shape[:2])
-            seen, inside = photograph_seen(self.pixels(view), view.camera, at)
+            photo, inside = photograph_through(self.pixels(view), view.camera, at)
             if layer == "difference":
-                ends = difference_limit(picture.color, seen, inside)
+                ends = difference_limit(picture.color, photo, inside)
                 self._on_change(f"**{view.name}**: {EXPLAIN[layer]} Colors end at {ends:.3g}.")
-            yield replace(picture, color=combined(layer, picture.color, seen, inside))
+            yield replace(picture, color=combined(layer, picture.color, photo, inside))
 
 
 def nothing(camera: Camera) -> Iterator[Picture | None]:

@@ -205,10 +205,10 @@ def splat_weights(
         square = inverse[:, 0] * off[:, 0] ** 2 + inverse[:, 2] * off[:, 1] ** 2
         square += 2 * inverse[:, 1] * off[:, 0] * off[:, 1]
         alpha = np.minimum(opacity * np.exp(-0.5 * square), policy.alpha_max)
-    seen = np.flatnonzero(alpha >= max(policy.alpha_min, 1e-12))
-    seen = seen[np.argsort(depth[rows[seen]], kind="stable")]
-    passed = np.concatenate([[1.0], np.cumprod(1 - alpha[seen])[:-1]]) if len(seen) else seen
-    return passed * alpha[seen], rows[seen]
+    kept = np.flatnonzero(alpha >= max(policy.alpha_min, 1e-12))
+    kept = kept[np.argsort(depth[rows[kept]], kind="stable")]
+    passed = np.concatenate([[1.0], np.cumprod(1 - alpha[kept])[:-1]]) if len(kept) else kept
+    return passed * alpha[kept], rows[kept]
 
 
 def pick_gaussian(
