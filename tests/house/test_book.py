@@ -1,4 +1,4 @@
-"""The book: every page is reached, its first one is a picture and three doors, its search is local.
+"""The book: every page is reached, its first one is a picture and three doors.
 
 That it is built without a warning, `./run docs` proves; here is what needs no Sphinx, and, under
 `--all`, what a browser says about the built book.
@@ -102,17 +102,6 @@ def test_pages_open_without_a_network(page: str, tmp_path: Path) -> None:
     assert "<h1>" in shown
     fetched = re.findall(r'(?:src|href)="(https?://[^"]+\.(?:js|css|woff2?|png))"', shown)
     assert fetched == []
-
-
-@pytest.mark.exhaustive
-def test_search_finds_pages_without_a_network(tmp_path: Path) -> None:
-    address = (built() / "search.html").as_uri() + "?q=transmittance"
-    shown, said = browse(address, tmp_path)
-    assert said == []
-    found = re.search(r'<ul class="search"[^>]*>(.*?)</ul>', shown, re.DOTALL)
-    assert found is not None
-    assert found.group(1).count("<li") > 5
-    assert "08_volume_rendering.html" in found.group(1)
 
 
 def test_settings_of_the_book_ask_for_nothing_from_elsewhere() -> None:
