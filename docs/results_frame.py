@@ -117,22 +117,31 @@ def rms(a: Array, b: Array) -> float:
     return float(np.sqrt(np.mean((np.asarray(a, np.float64) - b) ** 2)))
 
 
+def path_traced(scene: Scene, spp: int, max_depth: int) -> tuple[Array, float]:
+    """The mean of two pictures of half the samples, and half of the RMS difference between them."""
+    tracer = PathTracer(scene, allow_incomplete=True)
+    options, plain = PathOptions(max_depth=max_depth), FrameOptions()
+    halves = [tracer.render(spp=spp // 2, seed=seed, options=options).mean for seed in (0, 1)]
+    shown = [displayed(half, plain) for half in halves]
+    mean: Array = 0.5 * (halves[0] + halves[1])
+    return mean, 0.5 * rms(*shown)
+
+
 def against(data: Path | None, spp: int) -> dict[str, dict[str, tuple[float, float]]]:
     """{kind of light | technique: {scene: (RMS, processor ms)}}."""
     found: dict[str, dict[str, tuple[float, float]]] = {}
     for name, scene in scenes(data):
         for kind, lit, depth in kinds_of_light(scene, MAX_DEPTH):
             ready = FrameScene(lit)
-            tracer = PathTracer(lit, allow_incomplete=True)
-            options = PathOptions(max_depth=depth)
-            count = spp if depth == 2 else max(spp // LONG, 1)
-            sums, spent = processor(tracer.render, spp=count, seed=0, options=options)
-            traced = found.setdefault(f"{kind} | paths, {count} a pixel", {})
-            traced[name] = (0.0, spent)
+            count = spp if depth == 2 else max(spp // LONG, 2)
+            (truth, noise), spent = processor(path_traced, lit, count, depth)
+            traced = found.setdefault(f"{kind} | noise of the paths, {count} a pixel", {})
+            traced[name] = (noise, spent)
+            note(f"{name}: {kind}: noise {noise:.4f}")
             for technique, chosen in techniques(kind, ready.radius).items():
                 graph = frame_graph(ready, options_for(chosen, depth))
                 frame, spent = processor(graph.run, {"camera": lit.camera}, ["radiance"])
-                error = rms(displayed(frame["radiance"], chosen), displayed(sums.mean, chosen))
+                error = rms(displayed(frame["radiance"], chosen), displayed(truth, chosen))
                 found.setdefault(f"{kind} | {technique}", {})[name] = (error, spent)
                 note(f"{name}: {kind}: {technique}: {error:.4f}, {spent:.0f} ms")
     return found
@@ -150,7 +159,7 @@ def against_table(data: Path | None, spp: int) -> list[str]:
     order = {"direct light": 0, "sky light": 1, "all light": 2}
     for key in sorted(found, key=lambda key: (order[key.split(" | ")[0]], "paths" in key)):
         row, kind = found[key], key.split(" | ")
-        cells = [f"{row[n][0]:.3f}" if n in row and row[n][0] else "" for n in names]
+        cells = [f"{row[n][0]:.3f}" if n in row else "" for n in names]
         mean = np.mean([spent for _, spent in row.values()]) / 1e3
         lines.append(f"| {kind[0]} | {kind[1]} | {' | '.join(cells)} | {mean:.1f} s |")
     return lines

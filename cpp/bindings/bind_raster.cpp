@@ -94,7 +94,7 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
           int depth_test, bool depth_write, const std::array<int, 7>& stencil_rules,
           std::int32_t first_face, py::array face, py::array barycentrics, py::array depth,
           const py::object& stencil, const py::object& overdraw,
-          const std::optional<py::array>& behind, const std::optional<py::array>& drawn) {
+          const std::optional<py::array>& behind, const std::optional<py::array>& face_mask) {
     ArrayArgs args("rasterize");
     std::int32_t* numbers = args.out<std::int32_t>("face", face, "H W");
     VisibilityBuffers out{numbers,
@@ -116,7 +116,7 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
     }
     ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
                               static_cast<int>(args.size("W")));
-    if (drawn) mesh.drawn = args.in<bool>("drawn", *drawn, "F");
+    if (face_mask) mesh.face_mask = args.in<bool>("face_mask", *face_mask, "F");
     check_range(args, near, far);
     if (cull < 0 || cull > 2) args.range("cull", "0 to 2", std::to_string(cull));
     if (first_face < 0 || mesh.face_count() > 0x7fffffff - std::int64_t{first_face})
@@ -132,14 +132,14 @@ void draw(const py::array& positions, const py::array& faces, double near, doubl
 }
 
 void draw_depth(const py::array& positions, const py::array& faces, double near, double far,
-                py::array depth, const std::optional<py::array>& drawn) {
+                py::array depth, const std::optional<py::array>& face_mask) {
     ArrayArgs args("rasterize_depth");
     const VisibilityBuffers out{nullptr, nullptr, args.out<double>("depth", depth, "H W"),
                                 nullptr, 0,       nullptr,
                                 nullptr, true};
     ScreenMesh mesh = mesh_of(args, positions, faces, static_cast<int>(args.size("H")),
                               static_cast<int>(args.size("W")));
-    if (drawn) mesh.drawn = args.in<bool>("drawn", *drawn, "F");
+    if (face_mask) mesh.face_mask = args.in<bool>("face_mask", *face_mask, "F");
     check_range(args, near, far);
     const FragmentRules rules{Cull::none, Compare::less, true, near, far, {}};
     const py::gil_scoped_release release;
@@ -260,13 +260,13 @@ void bind_raster(py::module_& m) {
           py::arg("far"), py::arg("cull"), py::arg("depth_test"), py::arg("depth_write"),
           py::arg("stencil_rules"), py::arg("first_face"), py::arg("face"), py::arg("barycentrics"),
           py::arg("depth"), py::arg("stencil"), py::arg("overdraw"), py::arg("behind") = py::none(),
-          py::arg("drawn") = py::none(),
+          py::arg("face_mask") = py::none(),
           "Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; "
-          "only what lies behind `behind` (H, W), and only faces that are `drawn` (F,), unless "
+          "only what lies behind `behind` (H, W), and only faces of face_mask (F,), unless "
           "None.");
     m.def("rasterize_depth", &draw_depth, py::arg("positions"), py::arg("faces"), py::arg("near"),
-          py::arg("far"), py::arg("depth"), py::arg("drawn") = py::none(),
-          "Writes depth (H, W) alone, infinite where nothing is seen; of faces that are `drawn` "
+          py::arg("far"), py::arg("depth"), py::arg("face_mask") = py::none(),
+          "Writes depth (H, W) alone, infinite where nothing is seen; of faces of face_mask "
           "(F,) unless None.");
     m.def("rasterize_backward", &draw_backward, py::arg("positions"), py::arg("faces"),
           py::arg("face"), py::arg("d_barycentrics"), py::arg("d_depth"), py::arg("d_positions"),

@@ -49,7 +49,7 @@ struct SsaoTap {
     int first[lane_count];
 };
 
-static inline void place_tap(const SsaoRows& a, const SsaoBlock& b, int k, SsaoTap& at) {
+static inline void set_tap(const SsaoRows& a, const SsaoBlock& b, int k, SsaoTap& at) {
     const float reach = a.radius * a.alpha[k], c0 = a.cosine[k], s0 = a.sine[k];
     const float last_x = static_cast<float>(a.width - 1), last_y = static_cast<float>(a.height - 1);
     const int end_x = larger(static_cast<int>(a.width) - 2, 0);
@@ -72,7 +72,7 @@ static inline void place_tap(const SsaoRows& a, const SsaoBlock& b, int k, SsaoT
 
 static inline void add_sample(const SsaoRows& a, const SsaoBlock& b, int k, Lanes<float>& sum) {
     SsaoTap at;
-    place_tap(a, b, k, at);
+    set_tap(a, b, k, at);
     const float* w = a.inverse_depth;
     const int right = a.width > 1 ? 1 : 0, down = a.height > 1 ? static_cast<int>(a.width) : 0;
     Lanes<float> w00, w01, w10, w11;

@@ -2098,10 +2098,10 @@ def rasterize(
     stencil: typing.Any,
     overdraw: typing.Any,
     behind: numpy.ndarray | None = None,
-    drawn: numpy.ndarray | None = None,
+    face_mask: numpy.ndarray | None = None,
 ) -> None:
     """
-    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; only what lies behind `behind` (H, W), and only faces that are `drawn` (F,), unless None.
+    Draws onto face, barycentrics and depth, and onto stencil and overdraw unless None; only what lies behind `behind` (H, W), and only faces of face_mask (F,), unless None.
     """
 
 def rasterize_backward(
@@ -2122,10 +2122,10 @@ def rasterize_depth(
     near: typing.SupportsFloat | typing.SupportsIndex,
     far: typing.SupportsFloat | typing.SupportsIndex,
     depth: numpy.ndarray,
-    drawn: numpy.ndarray | None = None,
+    face_mask: numpy.ndarray | None = None,
 ) -> None:
     """
-    Writes depth (H, W) alone, infinite where nothing is seen; of faces that are `drawn` (F,) unless None.
+    Writes depth (H, W) alone, infinite where nothing is seen; of faces of face_mask (F,) unless None.
     """
 
 def read_vdb(

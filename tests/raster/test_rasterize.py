@@ -181,7 +181,7 @@ def test_a_camera_projects_as_it_does_elsewhere() -> None:
 def test_only_faces_that_are_drawn_hide_others() -> None:
     positions, faces = scene("soup")
     drawn = np.random.default_rng(3).uniform(size=len(faces)) < 0.6
-    some = rasterize(positions, faces, SIZE, drawn=drawn)
+    some = rasterize(positions, faces, SIZE, face_mask=drawn)
     alone = rasterize(positions, faces[drawn], SIZE)
     assert alone.covered.sum() > 10
     assert (some.face != rasterize(positions, faces, SIZE).face).any()
@@ -191,5 +191,5 @@ def test_only_faces_that_are_drawn_hide_others() -> None:
     np.testing.assert_array_equal(some.depth, alone.depth)
     np.testing.assert_array_equal(some.barycentrics, alone.barycentrics)
     np.testing.assert_array_equal(some.overdraw, alone.overdraw)
-    with pytest.raises(ShapeError, match="rasterize: drawn"):
-        rasterize(positions, faces, SIZE, drawn=drawn[1:])
+    with pytest.raises(ShapeError, match="rasterize: face_mask"):
+        rasterize(positions, faces, SIZE, face_mask=drawn[1:])

@@ -100,15 +100,15 @@ constexpr auto everywhere = [](std::int64_t) { return true; };
 }  // namespace
 
 template <Real R>
-void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const SeenFaces& seen,
+void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const FaceTable& table,
                   const GBuffer<R>& out) {
     const RayCone<R> cone{R(0), R(2 / (camera.fx + camera.fy))};
     parallel_for(camera.height, [&](std::int64_t y) {
         for (int x = 0; x < camera.width; ++x) {
             const std::int64_t i = y * camera.width + x;
-            if (const std::int32_t face = seen.face[i]; face >= 0) {
-                fill_pixel(scene, camera.ray(R(x) + R(0.5), R(y) + R(0.5)), cone, seen.shape[face],
-                           seen.primitive[face], i, out);
+            if (const std::int32_t face = table.face[i]; face >= 0) {
+                fill_pixel(scene, camera.ray(R(x) + R(0.5), R(y) + R(0.5)), cone, table.shape[face],
+                           table.primitive[face], i, out);
                 continue;
             }
             out.material[i] = -1;
@@ -174,9 +174,9 @@ void gbuffer_pdf(const PathScene<R>& scene, const Vec3<R>& eye, std::int64_t cou
                  });
 }
 
-template void fill_gbuffer(const PathScene<float>&, const Pinhole&, const SeenFaces&,
+template void fill_gbuffer(const PathScene<float>&, const Pinhole&, const FaceTable&,
                            const GBuffer<float>&);
-template void fill_gbuffer(const PathScene<double>&, const Pinhole&, const SeenFaces&,
+template void fill_gbuffer(const PathScene<double>&, const Pinhole&, const FaceTable&,
                            const GBuffer<double>&);
 template void light_gbuffer(const PathScene<float>&, const Vec3<float>&, std::int64_t,
                             const GBuffer<float>&, const float*, const float*, float*);

@@ -22,13 +22,13 @@ struct GBuffer {
 
 /// Which face each pixel sees (H, W), below 0 for none; and of each face (F,) the shape, and its
 /// primitive there.
-struct SeenFaces {
+struct FaceTable {
     const std::int32_t *face, *shape, *primitive;
 };
 
 /// All of `out` is written.
 template <Real R>
-void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const SeenFaces& seen,
+void fill_gbuffer(const PathScene<R>& scene, const Pinhole& camera, const FaceTable& table,
                   const GBuffer<R>& out);
 
 /// Light that arrives: from wi (N, 3), a unit vector of the world, as irradiance (N, 3) of what

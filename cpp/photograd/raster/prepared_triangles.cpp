@@ -117,7 +117,7 @@ PreparedTriangles::PreparedTriangles(const ScreenMesh& mesh, double near, Reach 
     parallel_for(list_pieces, [&](std::int64_t p) {
         std::uint64_t* own = next.data() + static_cast<std::size_t>(p) * tiles;
         for (std::int64_t i = p * piece; i < std::min(faces, (p + 1) * piece); ++i) {
-            if (mesh.drawn && !mesh.drawn[i]) continue;
+            if (mesh.face_mask && !mesh.face_mask[i]) continue;
             ScreenTriangle& next_one = triangles_[static_cast<std::size_t>(p * piece + filled[p])];
             if (!set_up(mesh, static_cast<std::uint32_t>(i), near, reach, next_one)) continue;
             ++filled[p];
@@ -139,9 +139,9 @@ PreparedTriangles::PreparedTriangles(const ScreenMesh& mesh, double near, Reach 
     parallel_for(list_pieces, [&](std::int64_t p) {
         std::uint64_t* own = next.data() + static_cast<std::size_t>(p) * tiles;
         for (std::int64_t i = p * piece; i < p * piece + filled[p]; ++i) {
-            const auto place = static_cast<std::uint32_t>(i);
-            for_tiles_of(triangles_[place], columns_,
-                         [&](std::size_t tile) { listed_[own[tile]++] = place; });
+            const auto slot = static_cast<std::uint32_t>(i);
+            for_tiles_of(triangles_[slot], columns_,
+                         [&](std::size_t tile) { listed_[own[tile]++] = slot; });
         }
     });
 }
@@ -157,9 +157,9 @@ void PreparedTriangles::at_points(std::span<const double> points, Visit&& visit)
             if (!(x >= 0 && x < width_ && y >= 0 && y < height_)) continue;
             const auto column = static_cast<std::size_t>(x) / raster_tile;
             const auto row = static_cast<std::size_t>(y) / raster_tile;
-            for (const std::uint32_t place :
+            for (const std::uint32_t slot :
                  in_tile(row * static_cast<std::size_t>(columns_) + column))
-                visit(i, triangles_[place].face, triangles_[place].depth_at(x, y));
+                visit(i, triangles_[slot].face, triangles_[slot].depth_at(x, y));
         }
     });
 }

@@ -17,7 +17,7 @@ struct ScreenMesh {
     std::span<const double> positions;     // (V, 3) = (z x, z y, z)
     std::span<const std::uint32_t> faces;  // (F, 3)
     int width, height;
-    const bool* drawn = nullptr;  // null for all, or which faces (F,) there are
+    const bool* face_mask = nullptr;  // null, or which faces (F,) there are
 
     [[nodiscard]] std::int64_t face_count() const {
         return static_cast<std::int64_t>(faces.size() / 3);
@@ -63,10 +63,10 @@ public:
 
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
-    [[nodiscard]] const ScreenTriangle& triangle(std::uint32_t place) const {
-        return triangles_[place];
+    [[nodiscard]] const ScreenTriangle& triangle(std::uint32_t slot) const {
+        return triangles_[slot];
     }
-    /// Their places, for `triangle`.
+    /// Their slots, for `triangle`.
     [[nodiscard]] std::span<const std::uint32_t> in_tile(std::size_t tile) const {
         return std::span(listed_).subspan(begin_[tile], begin_[tile + 1] - begin_[tile]);
     }
@@ -84,7 +84,7 @@ private:
 
     int width_, height_, columns_, rows_;
     // Those that may be seen, with gaps that are not written: each piece of the list of faces fills
-    // the places from its first face on.
+    // the slots from its first face on.
     std::unique_ptr<ScreenTriangle[]> triangles_;
     std::vector<std::uint32_t> begin_;  // by tile, one more at the end
     std::vector<std::uint32_t> listed_;

@@ -101,8 +101,8 @@ void rasterize(const ScreenMesh& mesh, const FragmentRules& rules, const Visibil
             for (int row = tile.y0; row < tile.y1; ++row)
                 std::fill_n(out.depth + std::int64_t{row} * mesh.width + tile.x0, tile.x1 - tile.x0,
                             std::numeric_limits<double>::infinity());
-        for (const std::uint32_t place : triangles.in_tile(static_cast<std::size_t>(number))) {
-            const ScreenTriangle& triangle = triangles.triangle(place);
+        for (const std::uint32_t slot : triangles.in_tile(static_cast<std::size_t>(number))) {
+            const ScreenTriangle& triangle = triangles.triangle(slot);
             if (!is_culled(rules.cull, triangle.front))
                 draw(triangle, out.first_face + static_cast<std::int32_t>(triangle.face), rules,
                      tile, mesh.width, out);

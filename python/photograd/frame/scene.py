@@ -133,16 +133,16 @@ class FrameScene:
             shape: of the core, which alone is drawn; None draws all.
             culling: of clusters of triangles.
         """
-        drawn = self._drawn(kinds, camera, culling)
+        face_mask = self._face_mask(kinds, camera, culling)
         if shape is not None:
-            drawn &= self.shape == shape
+            face_mask &= self.shape == shape
         return rasterize(
             project(self.vertices, camera),
             self.faces,
             (camera.height, camera.width),
             RasterOptions(near=self.near),
             behind=behind,
-            drawn=drawn,
+            face_mask=face_mask,
         )
 
     def draw_depth(self, camera: Camera, depth: FloatArray, *kinds: str) -> None:
@@ -156,7 +156,7 @@ class FrameScene:
         call = Arguments("FrameScene.draw_depth")
         size = (camera.height, camera.width)
         depth = call.array("depth", depth, size, dtype=np.float64, finite=False)
-        drawn = self._drawn(kinds, camera, "frustum")
+        face_mask = self._face_mask(kinds, camera, "frustum")
         call.run(
             _core.rasterize_depth,
             project(self.vertices, camera),
@@ -164,19 +164,19 @@ class FrameScene:
             self.near,
             np.inf,
             depth,
-            drawn,
+            face_mask,
         )
 
-    def _drawn(self, kinds: tuple[str, ...], camera: Camera, culling: Culling) -> Array:
+    def _face_mask(self, kinds: tuple[str, ...], camera: Camera, culling: Culling) -> Array:
         """(F,) bool: faces of these kinds that are not culled."""
         is_drawn = np.zeros(len(KINDS), np.bool_)
         is_drawn[[KINDS.index(kind) for kind in kinds]] = True
-        drawn = is_drawn[self.kind]
+        face_mask = is_drawn[self.kind]
         if culling != "none":
             visible = self.meshlets.visible(camera, self.near, culling)
             if not visible.all():
-                drawn &= visible[self.meshlets.number]
-        return drawn
+                face_mask &= visible[self.meshlets.number]
+        return np.asarray(face_mask)
 
 
 def _refuse_media(scene: Scene) -> None:

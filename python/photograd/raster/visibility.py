@@ -79,7 +79,7 @@ def rasterize(
     onto: Visibility | None = None,
     first_face: int = 0,
     behind: FloatArray | None = None,
-    drawn: Array | None = None,
+    face_mask: Array | None = None,
 ) -> Visibility:
     """Draw triangles: which of them the center of each pixel sees.
 
@@ -96,7 +96,7 @@ def rasterize(
         first_face: is added to the numbers of the faces, for a second mesh in the same buffers.
         behind: (H, W) depths in meters; only what lies further away is drawn. With the depths of
             one layer it finds the next: depth peeling [Everitt2001]. None draws all.
-        drawn: (F,) bool, which of the faces; None draws all.
+        face_mask: (F,) bool, which of the faces are drawn; None draws all.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays of other types or shapes, positions that are not
@@ -109,8 +109,8 @@ def rasterize(
     needs_stencil = options.stencil is not None
     if behind is not None:
         behind = call.array("behind", behind, tuple(size), finite=False)
-    if drawn is not None:
-        drawn = call.array("drawn", drawn, (len(faces),), dtype=np.bool_)
+    if face_mask is not None:
+        face_mask = call.array("face_mask", face_mask, (len(faces),), dtype=np.bool_)
     if onto is None:
         out = Visibility.cleared(*size, stencil=0 if needs_stencil else None)
     else:
@@ -132,7 +132,7 @@ def rasterize(
         out.stencil if needs_stencil else None,
         out.overdraw,
         behind,
-        drawn,
+        face_mask,
     )
     return out
 
