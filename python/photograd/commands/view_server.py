@@ -85,7 +85,7 @@ class Page:
         self._start = _start_camera(viewed, box)
         self._reach = float(np.linalg.norm(box[1] - box[0]))
         ahead = float((box.mean(axis=0) - self._start.position) @ self._start.forward)
-        self._ahead = max(ahead, 0.05 * self._reach)
+        self._queued = max(ahead, 0.05 * self._reach)
         with _quiet():
             self._server = viser.ViserServer(host=host, port=port, verbose=False)
         self.address = f"http://{host}:{self._server.get_port()}"
@@ -163,7 +163,7 @@ class Page:
         with client.atomic():
             client.camera.up_direction = up
             client.camera.position = camera.position
-            client.camera.look_at = camera.position + self._ahead * camera.forward
+            client.camera.look_at = camera.position + self._queued * camera.forward
             client.camera.fov = fov
 
     def _look_through(self, client: Any, camera: Camera) -> None:
