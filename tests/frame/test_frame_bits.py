@@ -50,7 +50,7 @@ def everything() -> list[Any]:
     return [*buffers, *occlusion.values(), *spread, tones[0], *tones[1].values()]
 
 
-@same_bits("ambient occlusion", kernels=("draw_span", "ssao_row"))
+@same_bits("occlusion in screen space", kernels=("draw_span", "ssao_row"))
 def occluded() -> list[Any]:
     """Widths that fill lanes and that do not, a narrow picture, and many samples."""
     made = []
