@@ -51,7 +51,7 @@ def main(folder):
     frames = []
     for frame, pose in zip(told["frames"], poses, strict=True):
         name = Path(frame["file_path"]).name
-        photograph = Image.open(folder / frame["file_path"]).convert("RGB")
+        photograph = Image.open(folder / frame["file_path"], formats=("JPEG", "PNG")).convert("RGB")
         photograph = photograph.resize((WIDTH, height), Image.Resampling.LANCZOS)
         photograph.save(TARGET / name, quality=QUALITY, optimize=True)
         moved = np.eye(4)

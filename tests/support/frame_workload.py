@@ -15,6 +15,7 @@ from photograd.frame import (
     ssao_backward,
     tone_map_backward,
 )
+from photograd.frame.light_views import background
 from photograd.lights import PointLight
 from photograd.transport.builtin import builtin_scene
 from photograd.transport.scene import Environment
@@ -37,6 +38,7 @@ def frames() -> None:
     for technique in ("horizon", "disks", "directional"):
         options = replace(options, sky_visibility=technique, gather_samples=1, disk_edge=2.0)
         frame_graph(FrameScene(scene), options).run({"camera": scene.camera}, ["radiance"])
+    background(scene, scene.camera)
     d = np.ones_like(radiance)
     depth = visible.depth.astype(np.float32)
     ssao_backward(depth, visible.shading, scene.camera, d[..., 0].copy())

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-import json
+import pickle
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.atomic_io import atomic_write
@@ -14,7 +13,7 @@ from photograd_course.build.course_files import default_cache
 from photograd_course.build.judging import what_decides
 from photograd_course.grading.check import Check
 from photograd_course.grading.local import LocalStudent
-from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.grading.outcome import Outcome
 from photograd_course.grading.runner import run_checks
 
 
@@ -26,13 +25,12 @@ def verdict_on(
     decides = [what_decides(folder), hints.read_text("utf-8") if hints.exists() else "", text]
     decides += [bundle.secret.hex(), *(check.id for check in checks)]
     name = hashlib.sha256("|".join(decides).encode()).hexdigest()
-    place = default_cache(folder.parent) / "tests" / f"{name}.json"
+    place = default_cache(folder.parent) / "tests" / name
     if not place.exists():
-        record = [[outcome.to_json() for outcome in each] for each in _run(text, bundle, checks)]
         place.parent.mkdir(parents=True, exist_ok=True)
-        atomic_write(place, json.dumps(record).encode())
-    alone, end = json.loads(place.read_bytes())
-    return [_from_json(each) for each in alone], [_from_json(each) for each in end]
+        atomic_write(place, pickle.dumps(_run(text, bundle, checks)))
+    found: tuple[list[Outcome], list[Outcome]] = pickle.loads(place.read_bytes())
+    return found
 
 
 def _run(text: str, bundle: Bundle, checks: Sequence[Check]) -> tuple[list[Outcome], list[Outcome]]:
@@ -42,7 +40,3 @@ def _run(text: str, bundle: Bundle, checks: Sequence[Check]) -> tuple[list[Outco
         checks, bundle.setting, lambda given: LocalStudent(sources, given), on_outcome=alone.append
     )
     return alone, end
-
-
-def _from_json(plain: dict[str, Any]) -> Outcome:
-    return Outcome(**{**plain, "status": Status(plain["status"])})

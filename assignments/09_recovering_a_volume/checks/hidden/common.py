@@ -1,6 +1,7 @@
 """Helpers for the hidden checks of several tasks."""
 
 import numpy as np
+from photograd_course.captures import striped_balls
 
 from ..common import around, views_of
 
@@ -12,22 +13,15 @@ def alike(t, n):
 
 def two_balls(t, n, scale=1.0):
     """A volume (n, n, n, 4) of two balls, bright and striped, their insides opaque."""
-    x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     center = t.rng.normal(size=3)
     center *= t.rng.uniform(0.25, 0.4) / np.linalg.norm(center)
     wave = t.rng.normal(size=3)
     wave *= 9.0 / np.linalg.norm(wave)
-    grid = np.full((n, n, n, 4), 0.5)
-    grid[..., 3] = 0.0
-    for middle, radius in ((center, 0.45), (-1.3 * center, 0.3)):
-        away = np.linalg.norm(x - scale * middle, axis=-1)
-        inside = np.clip((scale * radius - away) * n / 3 + 0.5, 0, 1)
-        paint = t.rng.uniform(0.6, 1.0, 3)
-        here = inside > grid[..., 3] / 10
-        shade = 0.8 + 0.2 * np.sin(x[here] @ wave)
-        grid[here, :3] = shade[:, None] * paint
-        grid[..., 3] = np.maximum(grid[..., 3], 10 * inside)
-    return grid
+    balls = [
+        (scale * middle, scale * radius, t.rng.uniform(0.6, 1.0, 3))
+        for middle, radius in ((center, 0.45), (-1.3 * center, 0.3))
+    ]
+    return striped_balls(n, balls, wave, 0.2)
 
 
 def photographed(t, grid, count, size, turn=0.0):

@@ -6,13 +6,14 @@ Cameras look at the origin; x is to the right, y down, z forward. Colors are lin
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from PIL import Image
 
 from .input_files import read_file, read_text
@@ -27,6 +28,30 @@ BALLS = (
 )
 
 
+def striped_balls(
+    n: int, balls: Iterable[tuple[ArrayLike, float, ArrayLike]], wave: ArrayLike, contrast: float
+) -> Array:
+    """A volume (n, n, n, 4) of assignment 08, between -1 and 1: balls with soft edges.
+
+    Args:
+        n: voxels along each axis.
+        balls: (center, radius, color) of each.
+        wave: (3,) of the stripes, radians per unit of length.
+        contrast: of the stripes, from 0 to 1/2; their brightest is the color.
+    """
+    x = (np.moveaxis(np.indices((n, n, n)), 0, -1) + 0.5) / n * 2 - 1
+    grid = np.full((n, n, n, 4), 0.5)
+    grid[..., 3] = 0.0
+    for center, radius, color in balls:
+        away = np.linalg.norm(x - np.asarray(center), axis=-1)
+        inside = np.clip((radius - away) * n / 3 + 0.5, 0, 1)
+        here = inside > grid[..., 3] / 10
+        stripes = 1 - contrast + contrast * np.sin(x[here] @ np.asarray(wave))
+        grid[here, :3] = stripes[:, None] * np.asarray(color)
+        grid[..., 3] = np.maximum(grid[..., 3], 10 * inside)
+    return grid
+
+
 def two_striped_balls(n: int, scale: float = 1.0) -> Array:
     """A volume (n, n, n, 4) of assignment 08, between -1 and 1: two balls with soft edges.
 
@@ -34,20 +59,11 @@ def two_striped_balls(n: int, scale: float = 1.0) -> Array:
         n: voxels along each axis.
         scale: of the balls and their distance; 1 nearly fills the box.
     """
-    x = (np.moveaxis(np.indices((n, n, n)), 0, -1) + 0.5) / n * 2 - 1
-    grid = np.full((n, n, n, 4), 0.5)
-    grid[..., 3] = 0.0
-    for middle, radius, paint in (
-        ((-0.25, 0.0, 0.1), 0.45, (0.95, 0.7, 0.6)),
-        ((0.4, 0.2, -0.25), 0.3, (0.6, 0.75, 0.95)),
-    ):
-        away = np.linalg.norm(x - scale * np.array(middle), axis=-1)
-        inside = np.clip((scale * radius - away) * n / 3 + 0.5, 0, 1)
-        here = inside > grid[..., 3] / 10
-        stripes = 0.75 + 0.25 * np.sin(x[here] @ np.array([6.0, 8.0, 3.0]))
-        grid[here, :3] = stripes[:, None] * paint
-        grid[..., 3] = np.maximum(grid[..., 3], 10 * inside)
-    return grid
+    balls = (
+        (scale * np.array([-0.25, 0.0, 0.1]), scale * 0.45, (0.95, 0.7, 0.6)),
+        (scale * np.array([0.4, 0.2, -0.25]), scale * 0.3, (0.6, 0.75, 0.95)),
+    )
+    return striped_balls(n, balls, (6.0, 8.0, 3.0), 0.25)
 
 
 def all_around(

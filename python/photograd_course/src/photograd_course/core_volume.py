@@ -20,7 +20,7 @@ def core_volume() -> tuple[Render, Adjoint]:
     08 takes equal numbers of steps; they agree where all rays are as long in the box.
 
     Returns:
-        (render, adjoint): of a grid, the corners of its box, origins, directions, the number of
+        (image, adjoint): of a grid, the corners of its box, origins, directions, the number of
         steps and the background; the second also of the derivative with respect to each pixel.
 
     Raises:
@@ -46,7 +46,7 @@ def core_volume() -> tuple[Render, Adjoint]:
         out, context = field.render(batch, options=base.RenderOptions(), seed=0, step=0)
         return field, context, np.asarray(out.color), 1 - np.asarray(out.opacity).reshape(-1, 1)
 
-    def render(
+    def image(
         grid: Array, low: Array, high: Array, o: Array, d: Array, n: int, background: Array
     ) -> Array:
         # The core leaves the background out.
@@ -69,5 +69,5 @@ def core_volume() -> tuple[Render, Adjoint]:
         return d_grid.reshape(grid.shape), np.asarray(np.sum(through * d_pixel, axis=0))
 
     corner, ray = np.ones(3), np.ones((1, 3))
-    render(np.zeros((2, 2, 2, 4)), -corner, corner, -2 * ray, ray, 4, corner)
-    return render, adjoint
+    image(np.zeros((2, 2, 2, 4)), -corner, corner, -2 * ray, ray, 4, corner)
+    return image, adjoint
