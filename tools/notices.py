@@ -112,7 +112,7 @@ def python_package(name: str) -> Package:
     found = metadata.distribution(name)
     (path,) = [p for p in found.files or [] if p.name == "LICENSE" and ".dist-info" in str(p)]
     text = Path(str(found.locate_file(path))).read_text(encoding="utf-8")
-    return Package(name, found.version, found.metadata.get("Home-page", ""), text)
+    return Package(name, found.version, str(found.metadata["Home-page"] or ""), text)
 
 
 def owner(library: str) -> Package | None:

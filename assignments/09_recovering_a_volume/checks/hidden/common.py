@@ -1,7 +1,7 @@
 """Helpers for the hidden checks of several tasks."""
 
 import numpy as np
-from photograd_course.captures import striped_balls
+from photograd_course.captures import ball_volume
 
 from ..common import around, views_of
 
@@ -21,7 +21,7 @@ def two_balls(t, n, scale=1.0):
         (scale * middle, scale * radius, t.rng.uniform(0.6, 1.0, 3))
         for middle, radius in ((center, 0.45), (-1.3 * center, 0.3))
     ]
-    return striped_balls(n, balls, wave, 0.2)
+    return ball_volume(n, balls, wave, 0.2)
 
 
 def photographed(t, grid, count, size, turn=0.0):

@@ -28,7 +28,7 @@ BALLS = (
 )
 
 
-def striped_balls(
+def ball_volume(
     n: int, balls: Iterable[tuple[ArrayLike, float, ArrayLike]], wave: ArrayLike, contrast: float
 ) -> Array:
     """A volume (n, n, n, 4) of assignment 08, between -1 and 1: balls with soft edges.
@@ -63,7 +63,7 @@ def two_striped_balls(n: int, scale: float = 1.0) -> Array:
         (scale * np.array([-0.25, 0.0, 0.1]), scale * 0.45, (0.95, 0.7, 0.6)),
         (scale * np.array([0.4, 0.2, -0.25]), scale * 0.3, (0.6, 0.75, 0.95)),
     )
-    return striped_balls(n, balls, (6.0, 8.0, 3.0), 0.25)
+    return ball_volume(n, balls, (6.0, 8.0, 3.0), 0.25)
 
 
 def all_around(
