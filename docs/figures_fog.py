@@ -26,7 +26,8 @@ IRRADIANCE = np.array([11.0, 9.5, 7.5])  # W/m^2
 WALL = np.array([0.55, 0.5, 0.45])  # albedo of all surfaces
 DIM = 0.015  # what corners that the sun does not reach show nevertheless, W/(m^2 sr)
 SIGMA_T = 0.15  # 1/m: 1 - exp(-0.15 * 8) = 70 % from wall to wall
-SIZE = 240
+SIZE = 320
+EXPOSURE = 3.0  # of what is shown
 
 
 def rectangle(axis: int, at: float, lo: tuple[float, float], hi: tuple[float, float]) -> Mesh:
@@ -69,7 +70,7 @@ def rays(size: int) -> RayBatch:
 
 
 def surfaces(solids: Bvh, batch: RayBatch) -> Array:
-    """Radiance (R, 3) of matt walls in the sun, dimmed by the dust on the way from the window."""
+    """Radiance (R, 3) of matte walls in the sun, dimmed by the dust on the way from the window."""
     o, d = (np.asarray(a, np.float64) for a in (batch.origins, batch.directions))
     hits = solids.trace(o, d)
     points = solids.surface_points(o, d, hits)
@@ -130,12 +131,13 @@ def main() -> None:
     found = computed()
     layer = found["derivative"]
     with style.house_style():
-        figure = style.new_figure(3 * PANEL + 0.7, PANEL + 1.35)
+        figure = style.new_figure(4 * PANEL + 0.7, PANEL + 1.1)
         panels = [
-            style.place_axes(figure, 0.15 + k * (PANEL + 0.2), 0.35, PANEL, PANEL) for k in range(3)
+            style.place_axes(figure, 0.15 + k * (PANEL + 0.2), 0.35, PANEL * (1 + k // 2), PANEL)
+            for k in range(3)
         ]
         for axes, name in zip(panels, ("clear", "dusty"), strict=False):
-            axes.imshow(srgb_encode(np.clip(found[name], 0, 1)), interpolation="nearest")
+            axes.imshow(srgb_encode(np.clip(EXPOSURE * found[name], 0, 1)), interpolation="nearest")
         panels[2].imshow(
             layer.T,
             origin="lower",
@@ -144,15 +146,15 @@ def main() -> None:
             norm=style.symmetric_scale(float(np.quantile(np.abs(layer), 0.995))),
             interpolation="nearest",
         )
-        titles = "clear air", "dust in the air", "where more dust brightens or dims"
+        titles = "clear air", "dust: single scattering", "derivative with respect to the dust"
         for axes, title in zip(panels, titles, strict=True):
             axes.set(xticks=[], yticks=[], title=title)
         style.write_caption(
             figure,
-            "A hall with three windows on the left. In dust, each shaft of light scatters towards "
-            "the camera. Right: the derivative of the picture's mean scattered light by sigma_t "
-            "(red: positive, blue: negative), in the upright plane through the middle window. Dust "
-            "in a shaft brightens; dust in the dark can only dim what lies behind it.",
+            "A hall with three windows on the left. Dust scatters the light of each shaft toward "
+            "the camera. Right: the derivative of the picture's mean scattered light with respect "
+            "to sigma_t (red: positive, blue: negative), in the upright plane through the middle "
+            "window. Dust in a shaft brightens; dust in the dark can only dim what lies behind it.",
             left=0.15,
             right=0.15,
         )

@@ -36,7 +36,7 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-SIZE, SPP = 96, 224
+SIZE, SPP = 128, 256
 OPTIONS = PathOptions(max_depth=40)
 PARAMETERS = {"fog": "media.fog.sigma_t", "cloud": "media.cloud.sigma_t", "wax": "media.wax.albedo"}
 SUN = [0.8, 0.7, 0.25]
@@ -196,9 +196,9 @@ def media_figure() -> Figure:
     check(found, SIZE)
     side, gap, left, top = 2.2, 0.15, 0.15, 0.35
     titles = {
-        "fog": ("fog", "by its extinction"),
-        "cloud": ("a cloud out of a file", "by its extinction"),
-        "wax": ("wax, amber, smoke", "by the wax's albedo"),
+        "fog": ("fog", "d picture / d extinction"),
+        "cloud": ("cloud from a .vdb file", "d picture / d extinction"),
+        "wax": ("wax, amber, smoke", "d picture / d albedo of wax"),
     }
     with style.house_style():
         figure = style.new_figure(3 * side + 2 * gap + 2 * left, 2 * (side + top) + 0.8)
@@ -215,11 +215,11 @@ def media_figure() -> Figure:
             axes.axis("off")
         style.write_caption(
             figure,
-            "Below each picture is how its pixels change with a number of the medium; red ones "
-            "grow, blue ones fall. Fog shows light in the air: more of it brightens the air and "
-            "dims the lit stone behind. A cloud takes light from the field; a denser one is "
-            "brighter. Light that has come through wax is redder than the light behind; if wax "
-            "scatters more, no pixel falls.",
+            "Above: participating media. Below: the derivative of each pixel with respect to one "
+            "parameter of the medium, red positive, blue negative. Denser fog brightens the air "
+            "around the hidden light and dims the lit stone behind it. The cloud casts a shadow; a "
+            "denser cloud is brighter. Light through wax is redder than its light source; with a "
+            "higher albedo no pixel gets darker.",
             left=left,
             right=left,
         )

@@ -1,7 +1,7 @@
 """The picture of textured scenes: `python docs/figures_meshes.py` writes docs/images/meshes.png.
 
-A painted floor under a ball of metal, through a pinhole and through a lens; which texels the
-picture depends on; and the floor found again, texel by texel.
+A textured floor under a ball of metal, through a pinhole and through a thin lens; the derivative
+with respect to each texel; and the texture recovered from one picture.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-TEXELS, SIZE, SPP, STEPS, STEP_SPP = 32, 160, 96, 100, 6
+TEXELS, SIZE, SPP, STEPS, STEP_SPP = 32, 256, 96, 100, 6
 
 
 def paint() -> Array:
@@ -61,7 +61,7 @@ def scene(size: int, texels: Array) -> Scene:
 
 
 def found_again(truth: Array) -> Array:
-    """The floor after STEPS steps of Adam, from gray, to match one picture."""
+    """The texture after STEPS steps of Adam, from gray, to match one picture."""
     photograph = PathTracer(scene(64, truth)).render(spp=SPP, seed=1).mean
     tracer = PathTracer(scene(64, np.full_like(truth, 0.4)))
     texels = tracer.params["textures.floor"]
@@ -76,7 +76,7 @@ def found_again(truth: Array) -> Array:
 
 
 def mesh_figure() -> Figure:
-    """Pinhole, lens, influence of texels, texels found."""
+    """Pinhole, thin lens, derivative with respect to texels, recovered texels."""
     truth = paint()
     tracer = PathTracer(scene(SIZE, truth))
     whole = tracer.render(spp=SPP, seed=1).mean
@@ -84,19 +84,28 @@ def mesh_figure() -> Figure:
     blurred = PathTracer(replace(tracer.scene, lens=lens)).render(spp=SPP, seed=1).mean
     weight = tracer.render_backward(np.ones_like(whole), spp=32, seed=2)["textures.floor"]
     panels = (
-        ("a textured floor", srgb_encode(np.clip(whole, 0, 1))),
-        ("focus in front of the ball", srgb_encode(np.clip(blurred, 0, 1))),
-        ("the weight of each texel", weight.sum(axis=2)),
-        (f"texels found in {STEPS} steps", srgb_encode(np.clip(found_again(truth), 0, 1))),
+        ("pinhole camera", srgb_encode(np.clip(whole, 0, 1))),
+        ("thin lens, focus in front", srgb_encode(np.clip(blurred, 0, 1))),
+        ("d picture / d texel", weight.sum(axis=2)),
+        (f"recovered in {STEPS} steps", srgb_encode(np.clip(found_again(truth), 0, 1))),
     )
     side, gap, left = 2.0, 0.15, 0.15
     with style.house_style():
-        figure = style.new_figure(4 * side + 3 * gap + 2 * left, 2.5)
+        figure = style.new_figure(4 * side + 3 * gap + 2 * left, 3.2)
         for column, (title, image) in enumerate(panels):
             axes = style.place_axes(figure, left + column * (side + gap), 0.35, side, side)
             axes.imshow(image, cmap="viridis" if image.ndim == 2 else None)
             axes.set_title(title)
             axes.axis("off")
+        style.write_caption(
+            figure,
+            "A textured floor and a ball of rough metal. Third: the derivative of the sum of all "
+            "pixels with respect to each texel of the floor, near the camera below: yellow is "
+            "large, and dark texels, behind the ball, have nearly none. Right: the texture "
+            "recovered from one picture of 64 x 64 pixels; texels without a derivative keep noise.",
+            left=left,
+            right=left,
+        )
     return figure
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.transport import (
@@ -32,8 +33,10 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-SIZE, TEXELS, SPP, RADIUS = 112, 128, 256, 2.0
+SIZE, TEXELS, SPP, RADIUS = 160, 160, 256, 2.0
 """Of the picture, of each map; rays a texel and a pixel; meters within which a surface occludes."""
+HORIZON, NO_MAP = 0.31, "#9fb4d0"
+"""Part of the checkerboard's picture that is sky, and not drawn; color of shapes without a map."""
 
 
 def baked_room(scene: Scene, texels: int, spp: int) -> tuple[Scene, dict[str, Texture]]:
@@ -96,28 +99,32 @@ def floor_pictures(size: int, spp: int) -> tuple[Array, Array, Array]:
 
 def texture_maps_figure() -> Figure:
     """Two rows of pictures."""
-    floor, looked_up, traced, _ = occlusion_pictures(SIZE, TEXELS, SPP)
-    one, filtered, truth = floor_pictures(SIZE, 256)
+    floor, looked_up, traced, mapped = occlusion_pictures(SIZE, TEXELS, SPP)
+    below = slice(round(HORIZON * SIZE), None)
+    one, filtered, truth = (image[below] for image in floor_pictures(SIZE, 256))
+    shown = np.ma.masked_where(~mapped, looked_up)
     rows = (
-        (("baked for the floor", floor), ("a room by such maps", looked_up), ("traced", traced)),
-        (("bilinear, 1 sample", one), ("mip maps, 1 sample", filtered), ("256 samples", truth)),
+        (("AO map of the floor", floor), ("room from AO maps", shown), ("traced AO", traced)),
+        (("bilinear, 1 spp", one), ("mip maps, 1 spp", filtered), ("bilinear, 256 spp", truth)),
     )
     side, gap, left, top = 2.0, 0.15, 0.15, 0.3
+    colors = colormaps["gray"].with_extremes(bad=NO_MAP)
     with style.house_style():
-        figure = style.new_figure(3 * side + 2 * gap + 2 * left, 2 * (side + top) + 0.95)
+        low = side * (1 - HORIZON)
+        figure = style.new_figure(3 * side + 2 * gap + 2 * left, side + low + 2 * top + 0.95)
         for line, row in enumerate(rows):
             for column, (title, image) in enumerate(row):
                 x, y = left + column * (side + gap), top + line * (side + top)
-                axes = style.place_axes(figure, x, y, side, side)
-                axes.imshow(image, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
+                axes = style.place_axes(figure, x, y, side, low if line else side)
+                axes.imshow(image, cmap=colors, vmin=0, vmax=1, interpolation="nearest")
                 axes.set_title(title)
                 axes.axis("off")
         style.write_caption(
             figure,
-            "Above: how much lies open within two meters of a room's walls, asked once of the "
-            "texels of their maps, or of every pixel by 256 rays; the boxes have no map. "
-            "Below: a checkerboard out to the horizon. Between the levels of a mip map one sample "
-            "is gray where many would be; a little nearer it is blurred where they are not.",
+            "Above: ambient occlusion within two meters, baked into textures of the walls, and "
+            "traced with 256 rays per pixel. The boxes and the light, in blue, have no texture. "
+            "Below: a checkerboard out to the horizon. With mip mapping, one sample per pixel "
+            "matches 256 far away, and over-blurs slightly at middle distance.",
             left=left,
             right=left,
         )

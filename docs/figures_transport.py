@@ -1,7 +1,7 @@
 """The picture of path tracing: `python docs/figures_transport.py` writes docs/images/cornell.png.
 
-A Cornell box, the light that a number of bounces adds, how far three ways of finding light have
-come after as many samples, and what the red wall's color does to the picture.
+A Cornell box, its direct and indirect light, three sampling strategies with equally many samples,
+and the derivative of the picture with respect to the red of the left wall.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-SIZE, SPP, FEW = 160, 64, 8
+SIZE, SPP, FEW = 200, 128, 8
 STEP = 0.02
+EXPOSURE = 1.6
 
 
 def display(radiance: Array) -> Array:
-    """Linear radiance as a screen wants it, clipped at white."""
-    return srgb_encode(np.clip(radiance, 0.0, 1.0))
+    """Linear radiance, brighter by EXPOSURE and clipped at white, as sRGB."""
+    return srgb_encode(np.clip(EXPOSURE * radiance, 0.0, 1.0))
 
 
 def picture(name: str, spp: int, **options: Any) -> Array:
@@ -34,7 +35,7 @@ def picture(name: str, spp: int, **options: Any) -> Array:
 
 
 def by_red_wall() -> Array:
-    """d(sum of channels)/d(red of the left wall), by a difference on the same paths."""
+    """d(sum of channels)/d(red of the left wall), by central differences on the same paths."""
     tracer = PathTracer(builtin_scene("cornell-box", SIZE))
     start = tracer.params["materials.red.albedo"].copy()
     found = []
@@ -49,21 +50,19 @@ def transport_figure() -> Figure:
     """Two scenes and the bounces above; strategies and the derivative below."""
     side, gap, left = 2.0, 0.15, 0.15
     width = 4 * side + 3 * gap + 2 * left
+    whole, direct = picture("cornell-box", SPP), picture("cornell-box", SPP, max_depth=2)
     above = (
-        ("all bounces", picture("cornell-box", SPP)),
-        ("direct light", picture("cornell-box", SPP, max_depth=2)),
-        (
-            "added by bounces, doubled",
-            2 * (picture("cornell-box", SPP) - picture("cornell-box", SPP, max_depth=2)),
-        ),
-        ("copper and glass", picture("cornell-spheres", 4 * SPP)),
+        ("global illumination", whole),
+        ("direct light", direct),
+        ("indirect light, doubled", 2 * (whole - direct)),
+        ("copper and glass", picture("cornell-spheres", 2 * SPP)),
     )
     below = tuple(
         (title, picture("cornell-spheres", FEW, strategy=strategy))
         for title, strategy in (
-            (f"{FEW} samples: light sampling", "light"),
-            (f"{FEW} samples: BSDF sampling", "bsdf"),
-            (f"{FEW} samples: both", "mis"),
+            (f"light sampling, {FEW} samples", "light"),
+            (f"BSDF sampling, {FEW} samples", "bsdf"),
+            (f"MIS of both, {FEW} samples", "mis"),
         )
     )
     with style.house_style():
@@ -79,16 +78,16 @@ def transport_figure() -> Figure:
         axes = style.place_axes(figure, left + 3 * (side + gap), 0.35 + side + 0.4, side, side)
         scale, colors = style.symmetric_scale(limit), style.signed_color_map()
         axes.imshow(slope, norm=scale, cmap=colors)
-        axes.set_title("derivative with respect to the wall's red")
+        axes.set_title("d picture / d red albedo")
         axes.axis("off")
         style.write_caption(
             figure,
-            "Above: a room with one light; what one bounce alone shows; what all others add (the "
-            "ceiling, and color that walls lend to boxes); a room with balls of copper and glass. "
-            "Below: the same few samples spent in three ways. BSDF sampling alone does well "
-            "in the copper ball's highlight alone; what only a path through glass can find (the "
-            "bright patch under the ball) is noisy for all. Right: a redder wall brightens itself "
-            "most, and through its light all that faces it.",
+            "Above: a Cornell box with one area light; direct light; indirect light, which reaches "
+            "the ceiling and carries the walls' colors; balls of copper and glass. Below: light "
+            "sampling, BSDF sampling and multiple importance sampling with 8 samples per pixel. "
+            "BSDF sampling suits the copper ball's highlight; the caustic under the glass is noisy "
+            "with all three. Right: the derivative with respect to the red of the left wall's "
+            "albedo, positive on the wall and on all that it illuminates.",
             left=left,
             right=left,
         )
