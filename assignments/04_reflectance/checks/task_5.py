@@ -36,7 +36,7 @@ def straight_on(t):
     "04.5.mirror",
     points=2,
     hint="equation (18): a metal is F times the lobe, and F depends on <wo, wh>",
-    sole="all angles, and white, where F is 1 at each",
+    sole="all angles: white, where F is 1, and black, where F is (1 - <wo, wh>)^5",
 )
 def white_metal_is_the_lobe(t):
     """White metal is `ggx_lobe`; black metal has F(0) = (1 - <wo, wh>)^5 of it."""

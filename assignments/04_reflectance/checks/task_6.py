@@ -100,10 +100,12 @@ def color_and_metalness_are_linear(t):
     got = slopes(t, wo, wi, color, m, r, g)
     here, step = shaded(t, wo, wi, color, m, r), t.rng.uniform(-0.5, 0.5, (20, 3))
     there = shaded(t, wo, wi, color + step, m, r)
-    t.close("<step, d_base_color>", got["base_color"] * step, (there - here) * g)
+    right = (there - here) * g
+    t.close("<step, d_base_color>", got["base_color"] * step, right, hint=ADVICE["base_color"])
     step = t.rng.uniform(0.2, 0.5, 20)
     there = shaded(t, wo, wi, color, m + step, r)
-    t.close("step times d_metalness", got["metalness"] * step, np.sum((there - here) * g, axis=1))
+    mine, right = got["metalness"] * step, np.sum((there - here) * g, axis=1)
+    t.close("step times d_metalness", mine, right, hint=ADVICE["metalness"])
 
 
 @check(
