@@ -1,10 +1,10 @@
 # %% [markdown]
 # # Your material
 # Renders a chart of your material, its lobe and the derivative with respect to roughness; recovers
-# the roughness and the color of a ball from its image. Where the C++ core is installed, its values
-# stand beside yours. Never graded. Run it as `python explore.py`; `--roughness`, `--metalness` and
-# `--start` (the initial roughness of the fit) change the ball, `--pixels` and `--steps` the amount
-# of work.
+# the roughness and the color of a ball from its image. Where the C++ core is installed, it says by
+# how much the core's image differs from yours. Never graded. Run it as `python explore.py`;
+# `--roughness`, `--metalness` and `--start` (the initial roughness of the fit) change the ball,
+# `--pixels` and `--steps` the amount of work.
 
 # %%
 import importlib

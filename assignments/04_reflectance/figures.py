@@ -6,6 +6,7 @@
 import figure_parts as parts
 import numpy as np
 from figure_parts import arrow, toward
+from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
@@ -279,6 +280,7 @@ def fig7_by_roughness(module):
     center = np.linalg.norm(np.argwhere(inside) - np.argwhere(inside)[middle], axis=1)
     ring = (center > 14) & (center < 26)
     dark = wi[:, 2] <= 0
+    error = change / step - slope
     facts = {
         "the middle of the highlight gets darker": Fact(slope[middle], -1e9, -1, red="back_no_D"),
         "the ring around it gets brighter": Fact(
@@ -298,18 +300,24 @@ def fig7_by_roughness(module):
     )
     panels[0].imshow(picture)
     panels[0].set_title("plastic, roughness 0.35")
-    top = float(np.quantile(np.abs(slope), 0.99))
+    # Linear between -0.1 and 0.1, logarithmic beyond: the middle is 20 times the ring.
+    scale = SymLogNorm(0.1, vmin=-float(np.abs(slope).max()), vmax=float(np.abs(slope).max()))
     for axes, values, title in (
         (panels[1], slope, "∂ brightness / ∂ roughness"),
-        (panels[2], change / step, "finite difference, step 0.02"),
+        (panels[2], error, "finite difference minus that"),
     ):
         field = np.full((size, size), np.nan)
         field[inside] = values
-        image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
+        image = axes.imshow(field, cmap=signed_color_map(), norm=scale)
+        lit = np.zeros((size, size))
+        lit[inside] = ~dark
+        axes.contour(inside, [0.5], colors=GRAY, linewidths=0.7)
+        axes.contour(np.where(inside, lit, np.nan), [0.5], colors=GRAY, linewidths=0.7)
         axes.set_title(title)
     for axes in panels:
         axes.set_axis_off()
-    figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
+    ticks = (-5, -1, -0.1, 0, 0.1, 1, 5)
+    figure.colorbar(image, ax=panels[1:], shrink=0.8, ticks=ticks, format="%g")
     return figure, facts
 
 

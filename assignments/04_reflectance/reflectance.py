@@ -3,7 +3,7 @@
 Directions are unit vectors in the frame of the surface, whose normal is +z. wo points to the
 viewer, wi to the light. A BRDF f(wo, wi), in 1/sr, does not contain the cosine, and is 0 unless
 both directions lie above the surface. N pairs of directions are two arrays (N, 3); parameters are
-arrays of N, too, one number for each pair.
+arrays of N, too, one number for each pair. C is the number of color channels.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 04` tells
 how far you are. The other functions are given and stay as they are. All numbers are float64.
@@ -93,9 +93,12 @@ def phong(wo, wi, specular, exponent):
     return _colored((exponent + 2) / (2 * np.pi) * c**exponent, specular, wo, wi)
 
 
-def schlick(f0, cos_theta):
-    """Schlick's Fresnel reflectance: f0 at normal incidence, 1 at grazing angles."""
-    return f0 + (1 - f0) * (1 - cos_theta) ** 5
+def schlick(f0, cos_oh):
+    """Schlick's Fresnel reflectance: f0 at normal incidence, 1 at grazing angles.
+
+    cos_oh is the cosine <wo, wh> between a direction and the normal of the facet.
+    """
+    return f0 + (1 - f0) * (1 - cos_oh) ** 5
 
 
 def burley_diffuse(wo, wi, albedo, roughness):
@@ -109,7 +112,8 @@ def burley_diffuse(wo, wi, albedo, roughness):
 def cook_torrance(wo, wi, f0, rms_slope, printed=False):
     """Cook and Torrance's metal: Beckmann's distribution, V-groove masking (N, 3).
 
-    With `printed` the constants are those that the paper of 1982 prints.
+    rms_slope is the root mean square slope of the facets: its roughness. With `printed` the
+    constants are those that the paper of 1982 prints.
     """
     up = above(wo, wi)
     o, i = (np.where(up[:, None], w, [0.0, 0.0, 1.0]) for w in (wo, wi))
@@ -130,11 +134,11 @@ def furnace(f: Model, cosines: Numbers) -> Albedos:
 
     Args:
         f: a function of wo (M, 3) and wi (M, 3) that returns (M, C), a BRDF without the cosine.
-        cosines: (K,), between each viewer and the normal, above 0 and up to 1.
+        cosines: (K,), for K viewers: cosine between viewer and normal, above 0 and up to 1.
 
     Returns:
-        (K, C), the albedo for each viewer, with the quadrature of `hemisphere()`; handout
-        equation (5). The viewers are in the plane y = 0, on the side of +x.
+        (K, C), the albedo for each viewer and channel, with the quadrature of `hemisphere()`;
+        handout equation (5). The viewers are in the plane y = 0, on the side of +x.
     """
     # >>> solution 04.1
     wi, solid_angles = hemisphere()

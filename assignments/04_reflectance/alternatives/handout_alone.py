@@ -62,8 +62,8 @@ def gltf(wo, wi, base_color, metalness, roughness):
     DV = ggx_lobe(wo, wi, roughness)[:, None]
     cos = np.sum(wo * half_vector(wo, wi), axis=1, keepdims=True)
     F_d, F_m = schlick(0.04, cos), schlick(base_color, cos)
-    f_d = (1 - F_d) * base_color / np.pi + F_d * DV
-    f = (1 - metalness[:, None]) * f_d + metalness[:, None] * F_m * DV
+    f_dielectric = (1 - F_d) * base_color / np.pi + F_d * DV
+    f = (1 - metalness[:, None]) * f_dielectric + metalness[:, None] * F_m * DV
     return np.where(above(wo, wi)[:, None], f, 0)
 
 
@@ -75,9 +75,9 @@ def gltf_backward(wo, wi, base_color, metalness, roughness, d_f):
     DV = ggx_lobe(wo, wi, roughness)[:, None]
     cos = np.sum(wo * wh, axis=1, keepdims=True)
     F_d, F_m = schlick(0.04, cos), schlick(base_color, cos)
-    f_d, f_m = (1 - F_d) * base_color / np.pi + F_d * DV, F_m * DV
+    f_dielectric, f_metal = (1 - F_d) * base_color / np.pi + F_d * DV, F_m * DV
     d_base_color = d_f * ((1 - m) * (1 - F_d) / np.pi + m * (1 - (1 - cos) ** 5) * DV)
-    d_metalness = np.sum(d_f * (f_m - f_d), axis=1)
+    d_metalness = np.sum(d_f * (f_metal - f_dielectric), axis=1)
     d_lobe = np.sum(d_f * ((1 - m) * F_d + m * F_m), axis=1)
     s2 = wh[:, 0] ** 2 + wh[:, 1] ** 2
     q = s2 / alpha**2 + wh[:, 2] ** 2

@@ -87,7 +87,8 @@ MIRRORS = (
     "04.2.energy",
     points=4,
     tolerance=TABLE,
-    hint="handout, section 2: D must cover the surface once, V divides by 4 o_z i_z",
+    hint="handout, section 2: D must cover the surface once, (7); V of (10) is already divided by "
+    "4 o_z i_z",
     sole="the furnace decides: what each roughness returns, 1 - ln 2 among it",
 )
 def what_mirrors_return(t):

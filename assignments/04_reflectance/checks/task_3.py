@@ -13,7 +13,8 @@ check = checks_for(calls=("ggx_pdf",), needs=("ggx_lobe",))
     "04.3.ball",
     points=2,
     tolerance=EXACT,
-    hint="at roughness 1: D = 1 / pi, and wo sees 2 o_z / (1 + o_z) of the facets turned to it",
+    hint="at roughness 1: D = 1 / pi, G1(wo) = 2 o_z / (1 + o_z); and (13): where reflection "
+    "spreads directions out, the density gets smaller",
     sole="the roughest surface in closed form",
 )
 def a_ball_spreads_evenly(t):
@@ -27,7 +28,8 @@ def a_ball_spreads_evenly(t):
     "04.3.mass",
     points=3,
     tolerance=TABLE,
-    hint="turning a facet by an angle turns the reflected direction by two: equation (12)",
+    hint="equations (12) and (13): turning a facet by an angle turns the reflected direction by "
+    "two, which spreads the same samples over more directions",
     sole="a density is known by its integral",
 )
 def what_stays_above(t):
@@ -42,7 +44,8 @@ def what_stays_above(t):
     "04.3.weight",
     points=3,
     tolerance=EXACT,
-    hint="a sample's weight is the share of the facets seen that the light sees, too",
+    hint="a weight is the fraction of the facets visible to the viewer that the light reaches as "
+    "well: G1 is that of wo",
     sole="what the sampler is good for: no sample counts more than 1",
 )
 def weights_are_shares(t):

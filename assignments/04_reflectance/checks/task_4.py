@@ -11,6 +11,10 @@ from .common import EXACT, densities, lobes, turned, viewer
 check = checks_for(calls=("sample_ggx",))
 
 LEVEL = 3e-4  # of one judgement; seven samples are judged
+NONE_BELOW = (
+    "no sample is below the surface, but some facets reflect downward: c of (15) reaches down to "
+    "-v_z; and wi is returned, not w_h"
+)
 
 
 def drawn(t, wo, r, u2):
@@ -83,7 +87,7 @@ def compare_samples(t, wo, r, shares):
     raise CheckFailed(
         f"roughness {r}, viewer at ({x:.2f}, {y:.2f}, {z:.2f}): samples do not lie as your density "
         f"says; samples: {mine}; density: {theirs}",
-        {"advice": ""},
+        {"advice": NONE_BELOW if above.all() else ""},
         arrays=(counts(wi, shares.shape) / len(wi), shares),
     )
 
@@ -128,7 +132,8 @@ def numbers_decide(t):
     "04.4.chi",
     points=4,
     needs=("ggx_lobe", "ggx_pdf"),
-    hint="handout, equations (14) to (16); compare your samples with Figure 6",
+    hint="v of (14) and w_h of (16) both have x and y times alpha, c of (15) reaches down to -v_z; "
+    "axis 0 of the arrays: heights of wi from the horizon up, axis 1: angles around the normal",
     sole="the definition: samples lie as densely as the density says",
 )
 def samples_have_the_density(t):

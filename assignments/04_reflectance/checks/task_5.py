@@ -8,11 +8,14 @@ from .common import EXACT, TABLE, buried, lobes, material, shaded, viewer
 
 check = checks_for(calls=("gltf",), needs=("ggx_lobe",), tolerance=EXACT)
 
+WHITE = "a white metal reflects everything at every angle: what is left is the lobe"
+BLACK = "for a black metal F(0) = (1 - <wo, wh>)^5: which cosine does your F use?"
+
 
 @check(
     "04.5.straight",
     points=3,
-    hint="straight on Schlick's ramp is 0: F is 0.04 for the coating, the base color for metal",
+    hint="straight on <wo, wh> is 1: F is 0.04 for the coating, the base color for metal",
     sole="base layer, coating and metal, each with a number of its own",
 )
 def straight_on(t):
@@ -32,19 +35,20 @@ def straight_on(t):
 @check(
     "04.5.mirror",
     points=2,
-    hint="a white metal reflects all at every angle: what is left is the lobe",
-    sole="all angles, where Schlick's ramp has nothing to say",
+    hint="equation (18): a metal is F times the lobe, and F depends on <wo, wh>",
+    sole="all angles: white, where F is 1, and black, where F is (1 - <wo, wh>)^5",
 )
 def white_metal_is_the_lobe(t):
-    """White metal is `ggx_lobe`; black metal reflects only what Schlick's ramp gives it."""
+    """White metal is `ggx_lobe`; black metal has F(0) = (1 - <wo, wh>)^5 of it."""
     wo, wi = upper_directions(t.rng, 20), upper_directions(t.rng, 20)
     r = float(t.rng.uniform(0.3, 1.0))
     lobe = lobes(t, wo, wi, r)
     got = shaded(t, wo, wi, np.ones((20, 3)), np.ones(20), np.full(20, r))
-    t.close("white metal", got, np.tile(lobe[:, None], 3), reveal=True)
+    t.close("white metal", got, np.tile(lobe[:, None], 3), reveal=True, hint=WHITE)
     got = shaded(t, wo, wi, np.zeros((20, 3)), np.ones(20), np.full(20, r))
     twist = 1 - np.linalg.norm(wo + wi, axis=1) / 2  # 1 - <wo, wh>
-    t.close("black metal", got, np.tile((twist**5 * lobe)[:, None], 3), reveal=True)
+    right = np.tile((twist**5 * lobe)[:, None], 3)
+    t.close("black metal", got, right, reveal=True, hint=BLACK)
 
 
 @check(
@@ -66,7 +70,7 @@ def half_metal_is_half_of_each(t):
 @check(
     "04.5.symmetry",
     points=1,
-    hint="the angle of Fresnel's factor is that to the half vector; below the surface all is 0",
+    hint="the angle of F is that between wo and the half vector; below the surface all is 0",
     sole="reciprocity, and nothing below",
 )
 def reciprocal_and_above(t):

@@ -1,7 +1,7 @@
 """Task 04.6, public checks."""
 
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, checks_for
+from photograd_course.grading import Array, CheckFailed, Items, Tolerance, checks_for
 from photograd_course.grading.adjoint_gate import (
     agrees_with_finite_differences,
     random_cotangent,
@@ -17,6 +17,12 @@ SMOOTH = Tolerance(
     1e-6, "central differences leave 4e-9, the nearest wrong one (back_color_no_ramp) 0.0014"
 )
 PARAMETERS = ("base_color", "metalness", "roughness")
+ADVICE = {
+    "base_color": "equation (21): each channel alone; the factor of the base layer is that of "
+    "(19), with 1 - F(0.04), that of the metal the derivative of (17) with respect to f0",
+    "metalness": "equation (22): the derivative of (20) with respect to m, summed over channels",
+    "roughness": "equations (23) to (25): summed over channels; D, S and alpha all depend on it",
+}
 NAMES = tuple(f"d_{name}" for name in PARAMETERS)
 
 
@@ -41,7 +47,7 @@ def near_mirrors(rng, n):
     "04.6.differences",
     points=5,
     tolerance=SMOOTH,
-    hint="handout, section 6: a parameter that all channels share gets the sum over channels",
+    hint="handout, section 6, equations (21) to (25)",
     sole="the derivative itself, without the reference",
 )
 def agrees_with_differences(t):
@@ -55,7 +61,12 @@ def agrees_with_differences(t):
         return shaded(t, wo, wi, *(p[name] for name in PARAMETERS))
 
     here = dict(zip(PARAMETERS, (color, m, r), strict=True))
-    agrees_with_finite_differences(t, got, forward, here, g, SMOOTH)
+    for name in PARAMETERS:
+        try:
+            agrees_with_finite_differences(t, {name: got[name]}, forward, here, g, SMOOTH)
+        except CheckFailed as failure:
+            failure.details["advice"] = ADVICE[name]
+            raise
 
 
 @check(
@@ -89,10 +100,12 @@ def color_and_metalness_are_linear(t):
     got = slopes(t, wo, wi, color, m, r, g)
     here, step = shaded(t, wo, wi, color, m, r), t.rng.uniform(-0.5, 0.5, (20, 3))
     there = shaded(t, wo, wi, color + step, m, r)
-    t.close("<step, d_base_color>", got["base_color"] * step, (there - here) * g)
+    right = (there - here) * g
+    t.close("<step, d_base_color>", got["base_color"] * step, right, hint=ADVICE["base_color"])
     step = t.rng.uniform(0.2, 0.5, 20)
     there = shaded(t, wo, wi, color, m + step, r)
-    t.close("step times d_metalness", got["metalness"] * step, np.sum((there - here) * g, axis=1))
+    mine, right = got["metalness"] * step, np.sum((there - here) * g, axis=1)
+    t.close("step times d_metalness", mine, right, hint=ADVICE["metalness"])
 
 
 @check(
