@@ -247,6 +247,15 @@ def test_a_wrong_sphere_costs_the_checks_of_the_scene_alone(bundle: Bundle, monk
     assert "06.2.traced" in lost(outcomes)
 
 
+def test_a_stub_of_the_material_is_named_itself(bundle: Bundle, monkeypatch) -> None:
+    stub = "def gltf(*_):\n    raise NotImplementedError\n"
+    monkeypatch.setitem(bundle.brought, "reflectance", stub)
+    monkeypatch.setattr("course.assignments.support.bundle_of", lambda *_: bundle)
+    texts = {each.id: each.text for each in judge(FOLDER, tasks=["06.3"])}
+    for name in ("sun", "rest", "linear"):
+        assert texts[f"06.3.{name}"] == "gltf: not implemented yet"
+
+
 def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     for name in ("explore.py", "real_time_frame.py"):
         shutil.copy(FOLDER / name, tmp_path)
