@@ -54,11 +54,12 @@ def fig2_raster(module):
     off = np.abs(frame["base_color"] - truth["base_color"]).max(axis=2) > 0.01
     points = module.in_world(truth["depth"], module.ZOOM * parts.W, module.POSE)
     near = (np.abs(points[..., 1]) < 1e-6) & (np.hypot(points[..., 0], points[..., 2]) < 3.5)
-    wrong, affine = [], None
+    wrong, squares = [], []
     for kind in (False, True):
-        affine, inside = parts.square_of_tiles(module, kind)
-        off_here = np.abs(affine - truth["base_color"]).max(axis=2) > 0.01
+        square, inside = parts.square_of_tiles(module, kind)
+        off_here = np.abs(square - truth["base_color"]).max(axis=2) > 0.01
         wrong.append(off_here[near & inside & (truth["depth"] < 1e6)].mean())
+        squares.append(square)
     here = parts.alike(module)
     depth = np.median(np.abs(frame["depth"][here] / truth["depth"][here] - 1))
     facts = {
@@ -75,11 +76,16 @@ def fig2_raster(module):
             depth, 0.0, 1e-4, red="raster_affine_depth"
         ),
     }
-    figure, panels = subplots(7.0, 1.5, 1, 4)
-    parts.show(panels[0], module.encode(frame["base_color"]), "yours")
-    parts.show(panels[1], module.encode(truth["base_color"]), "traced")
-    parts.gray(panels[2], 1.0 - off, f"different: {100 * off.mean():.1f} %")
-    parts.show(panels[3], module.encode(affine), "two triangles, affine")
+    mine, theirs = (module.encode(each["base_color"]) for each in (frame, truth))
+    figure, panels = subplots(7.0, 3.1, 2, 3)
+    parts.show(panels[0, 0], mine, "yours")
+    parts.show(panels[0, 1], theirs, "traced")
+    detail = np.where(off[..., None], [1.0, 0.0, 1.0], mine)[24:48, 40:79]
+    title = f"yours, 3 x; different: {100 * off.mean():.1f} %"
+    parts.show(panels[0, 2], detail, title)
+    parts.show(panels[1, 0], module.encode(squares[1]), "two triangles, affine")
+    parts.show(panels[1, 1], module.encode(squares[0]), "two triangles, with (7)")
+    panels[1, 2].set_axis_off()
     return figure, facts
 
 
@@ -125,6 +131,7 @@ def fig4_light(module):
         ),
     }
     figure, panels = subplots(7.0, 1.85, 1, 3)
+    mine, truth = mine[22:, 28:114], truth[22:, 28:114]
     parts.show(panels[0], mine, "yours, the whole sky")
     parts.show(panels[1], truth, "traced")
     parts.difference(panels[2], mine, truth, "yours minus traced", 0.3)
@@ -179,7 +186,7 @@ def fig5_display(module):
     axes.plot([2.5], [1], "o", color=BLUE, markersize=4)
     note(axes, "white", (2.5, 1), (4, -12), color=BLUE)
     note(axes, "cut off", (6, 1), (0, 4), color=ORANGE)
-    axes.set(xlabel="radiance", ylabel="shown", ylim=(0, 2))
+    axes.set(xlabel="luminance", ylabel="shown", ylim=(0, 2))
     plain_axes(axes)
     return figure, facts
 

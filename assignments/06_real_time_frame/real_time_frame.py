@@ -440,7 +440,7 @@ def sunlight(gbuffer, focal, pose, parts, size=512, texels=2.2):
     """(H, W): the fraction of sunlight that reaches each pixel, by your shadow map; 1 for sky.
 
     The bias is given in texels, each 2 HALF / size meters wide. Less than 2.2 is too small for some
-    slopes: 1.5 sqrt(2) reach the corner of the farthest of nine texels.
+    slopes: from a corner of its texel, a point is 1.5 sqrt(2) from the farthest of nine centers.
     """
     light = sun_camera(LIGHTS["to_sun"], size)
     corners = joined(parts)[0]

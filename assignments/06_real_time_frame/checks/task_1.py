@@ -74,7 +74,8 @@ def each_pixel_belongs_to_one_triangle(t):
 @check(
     "06.1.perspective",
     points=5,
-    hint="handout, equations (6) and (7): 1 / depth is linear in the picture, depth is not",
+    hint="handout, equations (6) and (7): 1 / depth is linear in the picture, depth is not. The "
+    "weights mix anything that is linear on the triangle, such as positions, as (2) does",
     sole="a closed form for weights and depths",
 )
 def a_slanted_triangle_in_perspective(t):
@@ -93,9 +94,15 @@ def a_slanted_triangle_in_perspective(t):
         seen = face == 0
         t.require(int(seen.sum()) > 200, "the triangle covers more than 200 pixels")
         t.require(bool(np.isinf(depth[~seen]).all()), "depth is infinite where nothing is seen")
-        t.close("depth", depth[seen], right[seen], reveal=True)
+        near = np.where(seen, depth, 0.0), np.where(seen, right, 0.0)
+        t.close("depth, 0 where nothing is seen", *near, reveal=True)
         t.close("sum of the weights", weights[seen].sum(axis=1), np.ones(seen.sum()))
-        t.close("points of the pixels", weights[seen] @ points, (right[..., None] * rays)[seen])
+        t.close(
+            "positions of the corners, mixed with your weights",
+            np.where(seen[..., None], weights @ points, 0.0),
+            np.where(seen, right, 0.0)[..., None] * rays,
+            reveal=True,
+        )
 
 
 @check(

@@ -37,13 +37,21 @@ def reflected(t, gbuffer, focal, pose, to_sun):
     return (f * np.maximum(inside[1][:, 2:], 0.0)).reshape(height, width, 3)
 
 
+def material_is_there(t):
+    """Name `gltf`, not the function that calls it, where only a stub of it is beside."""
+    up = np.array([[0.0, 0.0, 1.0]])
+    material = np.full((1, 3), 0.5), np.zeros(1), np.full(1, 0.5)
+    t.call("reflectance.gltf", up, up, *material, returns=Array((1, 3)))
+
+
 NAMES = ("base_color", "metalness", "roughness")
 
 
 @check(
     "06.3.sun",
     points=4,
-    hint="handout, equations (12) and (13): all vectors in one frame; the sun's is the world",
+    hint="handout, equations (12) and (13): take to_sun, which is in the world, into the camera's "
+    "frame. If all is 0: does ω_o point from the surface to the viewer?",
     sole="the sun alone, in a closed form",
 )
 def sunlight_is_reflected_by_the_material(t):
@@ -65,6 +73,7 @@ def sunlight_is_reflected_by_the_material(t):
 )
 def sky_emission_and_alpha(t):
     """Without the sun: emission and sky times base color; all times alpha; 0 where nothing is."""
+    material_is_there(t)
     gbuffer, focal, pose, lights, lit, open_sky = case(t)
     lights["sun"] = np.zeros(3)
     gbuffer["depth"][1:3, 2:5] = np.inf
@@ -86,6 +95,7 @@ def sky_emission_and_alpha(t):
 )
 def light_is_linear(t):
     """Twice the light is twice the radiance; turned together, camera and sun see the same."""
+    material_is_there(t)
     gbuffer, focal, pose, lights, lit, open_sky = case(t)
     rest = lit, open_sky
     layer = lit_layer(t, gbuffer, focal, pose, lights, *rest)

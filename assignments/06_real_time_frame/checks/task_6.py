@@ -42,7 +42,8 @@ def bumpy(t, height, width, samples=6):
     "06.6.plane",
     points=2,
     tolerance=FAITHFUL,
-    hint="handout, equations (24) to (26): the points of a plane are not above it",
+    hint="handout, equations (24) to (26): the points of a plane are not above it; BIAS keeps "
+    "rounding from lifting some of them",
     sole="planes and sky",
 )
 def a_plane_hides_nothing(t):
@@ -58,14 +59,17 @@ def a_plane_hides_nothing(t):
         rest = normals, focal, disk(t, height, width, 8), np.array([8.0, 1.0, 3.0])
         open_sky, d_settings = occluded(t, depth, *rest, np.ones((height, width)))
         t.close("open sky", open_sky, np.ones((height, width)), reveal=True)
-        t.require(not d_settings.any(), "where nothing is hidden, derivatives are 0")
+        given = ", ".join(f"{value:.2g}" for value in d_settings)
+        t.require(
+            not d_settings.any(), f"where nothing is hidden, d_settings is 0; yours is {given}"
+        )
 
 
 @check(
     "06.6.step",
     points=4,
-    hint="handout, equations (24) to (28): a sample hides by the sine of its elevation and its "
-    "distance",
+    hint="handout, equations (24) to (28): a sample reads the pixel of (24), whose + ½ is the "
+    "center; it hides by the sine of its elevation and by its distance",
     sole="a closed form, one sample at a time",
 )
 def a_step_in_depth(t):

@@ -12,7 +12,12 @@ from photograd_course.errors import IoError
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.predictions import prediction_letters, write_lock
 from photograd_course.student.session import write_answers
-from photograd_course.student.sheet import notes_before_submission, question_sheet, remember_shown
+from photograd_course.student.sheet import (
+    SHOWN_NAME,
+    notes_before_submission,
+    question_sheet,
+    remember_shown,
+)
 from photograd_course.submissions.answers import read_answers
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
@@ -132,11 +137,23 @@ def test_an_answer_of_the_wrong_form_is_named(
     assert any("<- write" in line for line in question_sheet(bundle, work))
 
 
-def test_a_missing_name_is_said(bundle: Bundle, work: WorkFolder) -> None:
+def test_a_missing_name_is_said_and_draws_no_numbers(bundle: Bundle, work: WorkFolder) -> None:
     path = work.path / "answers.toml"
     path.write_text(path.read_text("utf-8").replace("Ada", ""), encoding="utf-8")
     assert any("student is empty" in note for note in notes_before_submission(bundle, work))
-    assert "name" in question_sheet(bundle, work)[0]
+    sheet = question_sheet(bundle, work)
+    assert sheet[:2] == [
+        "Write your name into answers.toml first: it draws the numbers.",
+        "Not shown until then: 90.g1.",
+    ]
+    assert {"Up or down?", "Which line?"} <= set(sheet)
+    assert not any("f(" in line for line in sheet)
+    remember_shown(bundle, work)
+    assert not (work.path / SHOWN_NAME).exists()
+    path.write_text(ANSWERS, encoding="utf-8")
+    assert any("You wrote" in line for line in question_sheet(bundle, work))
+    remember_shown(bundle, work)
+    assert (work.path / SHOWN_NAME).exists()
 
 
 def test_numbers_that_have_changed_since_are_said(bundle: Bundle, work: WorkFolder) -> None:

@@ -23,14 +23,22 @@ REDRAWN = (
 
 
 def question_sheet(bundle: Bundle, work: WorkFolder) -> list[str]:
-    """Lines: each question with its numbers, options, points and the answer so far."""
+    """Lines: each question with its numbers, options, points and the answer so far.
+
+    Without a name, those whose numbers it draws are not shown: others would come in their place.
+    """
     student, answers = work.answers()
     source = work.source()
+    named = [question.id for question in bundle.questions if question.draw and not student]
     lines = [] if student else ["Write your name into answers.toml first: it draws the numbers."]
+    if named:
+        lines.append(f"Not shown until then: {', '.join(named)}.")
     if any(question.draw for question in bundle.questions):
         lines.append(REDRAWN)
     locked = _locked(bundle, work)
     for question in bundle.questions:
+        if question.id in named:
+            continue
         drawn = draw(question, student, source)
         worth = f"{question.points:g} point{'s' if question.points != 1 else ''}"
         lines += ["", f"{question.id}  ({question.kind}, {worth})", drawn.text]
@@ -48,7 +56,9 @@ def question_sheet(bundle: Bundle, work: WorkFolder) -> list[str]:
 
 
 def remember_shown(bundle: Bundle, work: WorkFolder) -> None:
-    """Note which numbers the student has now seen."""
+    """Note which numbers the student has now seen: none without a name."""
+    if not work.answers()[0]:
+        return
     path = work.path / SHOWN_NAME
     atomic_write(path, (json.dumps(_draws(bundle, work), indent=1) + "\n").encode())
 
