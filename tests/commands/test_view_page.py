@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from support.missing import need_module
 from tests.commands.browser import (
     PATIENCE,
     Browser,
@@ -200,6 +201,7 @@ def test_a_fit_is_followed_until_it_is_interrupted(
 
 
 def test_a_port_in_use_is_refused_with_the_next_free_one(model_folder: Path) -> None:
+    need_module("viser", by_choice=True)
     port = free_port()
     with photograd("view", model_folder, "--port", port) as first:
         waited(lambda: fetched(f"http://127.0.0.1:{port}"))
