@@ -55,7 +55,7 @@ THRESHOLD = 0.002  # of the positional gradient statistics
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this factor
 TILE = 16  # pixels
 RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
-# The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
+# The matrix K that takes r to the cross product a x r has the entries sum_k CROSS[i, j, k] a_k.
 CROSS = np.array(
     [
         [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
@@ -227,7 +227,7 @@ def render(
     """Render some pixels of a scene.
 
     Args:
-        gaussians: N of them; those that are not farther than NEAR in front are culled.
+        gaussians: N of them; those whose depth is NEAR or less are culled.
         camera: see above.
         pixels: (P, 2), points on the screen.
         background: (3,).

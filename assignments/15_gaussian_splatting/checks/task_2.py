@@ -164,7 +164,8 @@ def the_projection_agrees_with_differences(t):
     points=3,
     adjoints=("project",),
     tolerance=GATE,
-    hint="handout, section 2: what is clamped does not move; t_z still stands under f",
+    hint="handout, section 2: h is constant there, but J_xz = -f h / t_z still depends on t_z; "
+    "in the world an error of t_z shows in all three columns",
     sole="the branch that public code has wrong",
 )
 def outside_the_limits_too(t):

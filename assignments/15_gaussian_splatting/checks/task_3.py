@@ -59,8 +59,8 @@ def a_round_splat(t):
 @check(
     "15.3.ellipse",
     points=2,
-    hint="handout, equations (14) and (15): the inverse swaps xx and yy; Q_xy dx dy stands "
-    "outside of the 1/2; or dx and dy have different signs",
+    hint="handout, equations (14) and (15): the inverse swaps xx and yy; the term of Q_xy "
+    "stands outside of the 1/2; or the two offsets have different signs",
     sole="says whether the conic belongs to the covariance",
 )
 def on_an_ellipse_alpha_is_the_same(t):

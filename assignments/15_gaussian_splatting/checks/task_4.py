@@ -84,7 +84,8 @@ def the_order_of_the_list_does_not_matter(t):
     points=4,
     adjoints=("composite_splats",),
     tolerance=GATE,
-    hint="handout, section 4: composite_adjoint gives d_sigma; from it d_alpha; colors are shared",
+    hint="handout, section 4: composite_adjoint gives d_sigma; from it d_alpha; colors are shared; "
+    "a splat with alpha = 0 in a pixel has a derivative as well",
     sole="the derivative itself, without the reference",
 )
 def blending_agrees_with_differences(t):

@@ -88,7 +88,7 @@ def the_chain_agrees_with_differences(t):
 @check(
     "15.5.behind",
     points=1,
-    hint="leave out what is not farther than NEAR in front, and give its rows zeros",
+    hint="leave out each Gaussian whose depth is NEAR or less, and give its rows zeros",
     sole="tests culling only",
 )
 def what_is_behind_the_camera_has_no_part(t):

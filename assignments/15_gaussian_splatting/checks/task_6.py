@@ -59,7 +59,7 @@ def who_stays_and_who_is_new(t):
     "15.6.values",
     points=2,
     hint="handout, equations (19) and (20). log-scales: minus log(SHRINK); means: B times the "
-    "random numbers, B of the original",
+    "random numbers, B of the original; parts keep its opacity",
     sole="tests the values of new rows",
 )
 def clones_keep_the_middle_and_parts_are_drawn(t):

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
 from ..assignment.manifest import Manifest
 from ..atomic_io import atomic_write
 from ..errors import IoError, message
+
+# What a stub raises; see `build.regions`.
+STUB = re.compile(
+    r"^ *raise NotImplementedError\(\"\d\d\.\d+ ([\w.]+): see the handout, section \d+\"\)",
+    re.MULTILINE,
+)
 
 
 def with_own_modules(
@@ -30,6 +37,24 @@ def with_own_modules(
                 found[path.name] = path.read_bytes()
                 taken.append(path)
     return found, taken
+
+
+def unwritten(source: str) -> list[str]:
+    """The functions of a student's module that are still stubs, in their order.
+
+    Args:
+        source: of the module.
+    """
+    return STUB.findall(source)
+
+
+def taken_along(path: Path) -> str:
+    """What `course start` says of a module that it has copied; it names what is not written yet."""
+    said = f"Taken along: your {path}"
+    if names := unwritten(path.read_text("utf-8", errors="replace")):
+        what = f"{', '.join(names)} {'is' if len(names) == 1 else 'are'} not written there yet"
+        said += f"; {what}: copy it again when you have finished it"
+    return said
 
 
 def lay_out(files: Mapping[str, bytes], target: Path) -> list[Path]:

@@ -34,7 +34,7 @@ def register(course: typer.Typer) -> None:
         from ...build.kits import find_kit
         from ...build.public import PAGE
         from ...student.reading import kit_page
-        from ...student.starting import lay_out, with_own_modules
+        from ...student.starting import lay_out, taken_along, with_own_modules
 
         kit = find_kit(assignment)
         target = folder or Path(kit.manifest.folder_name)
@@ -44,7 +44,7 @@ def register(course: typer.Typer) -> None:
         lay_out(files, target)
         console = Console(highlight=False)
         for path in taken:
-            console.print(f"Taken along: your {path}", soft_wrap=True)
+            console.print(taken_along(path), soft_wrap=True)
         console.print(f"{kit.manifest.id} {kit.manifest.title}: ready in {target}", soft_wrap=True)
         console.print("Next:", soft_wrap=True)
         predicts = any(q.kind == "prediction" for q in kit.bundle.questions)
