@@ -2,7 +2,8 @@
 
 Writes docs/images/hero_NAME.jpg (960 x 540) after each pass, and what it took into
 docs/images/heroes.toml, with the processor hours of all of them; `--size` tries a scene in another
-size. Nothing is denoised: what noise is left is that of the samples.
+size. Nothing is denoised: what noise is left is that of the samples. The scenes caustics and clouds
+need more time than the two on the page, and have no picture there yet.
 """
 
 from __future__ import annotations
