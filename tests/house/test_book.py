@@ -11,9 +11,11 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from support.missing import missing
 from support.tree import ROOT
@@ -77,6 +79,17 @@ def test_pictures_are_not_too_large() -> None:
         if path.suffix in {".png", ".jpg"} and path.stat().st_size > 1_500_000
     }
     assert large == {}
+
+
+def test_rendered_pictures_are_those_on_record() -> None:
+    record = tomllib.loads((DOCS / "images" / "heroes.toml").read_text(encoding="utf-8"))
+    sizes = {}
+    for path in (DOCS / "images").glob("hero_*.jpg"):
+        with Image.open(path) as picture:
+            sizes[path.stem.removeprefix("hero_")] = picture.size
+    assert sizes == {name: (each["width"], each["height"]) for name, each in record.items()}
+    page = (DOCS / "pictures.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"\(images/hero_(\w+)\.jpg\)", page)) == set(record)
 
 
 def built() -> Path:
