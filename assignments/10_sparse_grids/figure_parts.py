@@ -13,6 +13,7 @@ from photograd_course.assignment.load import load_module
 from photograd_course.build.kits import source_folders
 from photograd_course.captures import Photograph, all_around, rays_to_origin
 from photograd_course.viz.handout import Array
+from photograd_course.viz.style import INK
 
 
 def _photographs() -> ModuleType:
@@ -133,6 +134,18 @@ def ball_and_ring(n: int) -> tuple[Array, Array]:
     values[:, :3] = np.where((ball >= ring)[:, None], (0.9, 0.6, 0.25), (0.35, 0.55, 0.9))
     values[:, 3] = 8 * np.maximum(ball, ring)
     return every[values[:, 3] > 0], values[values[:, 3] > 0]
+
+
+def outlines(axes: Axes, n: int, sets: Sequence[Array]) -> None:
+    """The borders of sets of voxels (V, 3) in the middle slice across z, dashed from the second."""
+    for voxels, style in zip(sets, ("-", "--"), strict=True):
+        mask = np.zeros((n + 2, n + 2))
+        at = voxels[voxels[:, 2] == n // 2] + 1
+        mask[at[:, 0], at[:, 1]] = 1.0
+        for i, j in np.argwhere(mask[:-1] != mask[1:]):
+            axes.plot([i - 0.5, i - 0.5], [j - 1.5, j - 0.5], color=INK, linestyle=style, lw=1)
+        for i, j in np.argwhere(mask[:, :-1] != mask[:, 1:]):
+            axes.plot([i - 1.5, i - 0.5], [j - 0.5, j - 0.5], color=INK, linestyle=style, lw=1)
 
 
 def decibels(a: Array, b: Array) -> float:

@@ -78,7 +78,7 @@ def fig2_absent(module: ModuleType) -> tuple[Figure, Facts]:
         note(
             right, f"color {c}", (sigma[40], curves[c][40]), (0, 6 if c > 0.5 else -14), color=color
         )
-    right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
+    right.set(xlabel="σ of the new step, per unit of length", ylabel="loss")
     for axes in (left, right):
         plain_axes(axes)
     return figure, facts
@@ -200,6 +200,8 @@ def fig4_lost(module: ModuleType) -> tuple[Figure, Facts]:
     absent[tuple(some.T)] = False
     nothing = np.ma.masked_where(~absent[:, :, n // 2].T, np.ones((n, n)))
     panels[0].imshow(nothing, origin="lower", cmap="Greys", vmin=0, vmax=6)
+    for axes in panels:
+        parts.outlines(axes, n, [voxels[(values[:, 3] > 4) & each] for each in (ball, ~ball)])
     return figure, facts
 
 

@@ -85,7 +85,8 @@ def samples_in_full_leaves(t):
 @check(
     "10.2.faces",
     points=2,
-    hint="a point on a common face belongs to the upper leaf: going down, the jump there is 0",
+    hint="the ray leaves by the nearest face, the minimum in (7); a point on a common face belongs "
+    "to the upper leaf, so that going down u may be 0 there",
     sole="points that a random ray never meets, and a lattice always",
 )
 def samples_on_faces(t):

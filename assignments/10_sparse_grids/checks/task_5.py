@@ -80,7 +80,8 @@ def the_first_steps(t):
     moved[:, 3] = np.maximum(moved[:, 3], 0)
     require_same_list(t, got[0], voxels)
     t.close("values", got[1], moved)
-    t.close("losses", got[2], np.array([loss]))
+    hint = "record the loss that comes with each derivative, that of the values before the step"
+    t.close("losses", got[2], np.array([loss]), hint=hint)
     loss, second = t.call("adapters.gradient", n, voxels, got[1], rays, target, returns=parts)
     m = (0.09 * d + 0.1 * second) / (1 - 0.9**2)
     v = (0.0099 * d**2 + 0.01 * second**2) / (1 - 0.99**2)
