@@ -21,9 +21,7 @@ def fig1_result(module):
     scores = [psnr(each, truth) for each in views]
     facts = {
         "with harmonics more than 22 dB": Fact(scores[0], 22, 60, red="uphill"),
-        "degree 0 loses more than 0.5 dB": Fact(
-            scores[0] - scores[1], 0.5, 20, red="coefficients_cut"
-        ),
+        "degree 0 loses more than 0.5 dB": Fact(scores[0] - scores[1], 0.5, 20, red="uphill"),
     }
     figure, panels = subplots(6.0, 6.0, 3, 3)
     names = ("held out", f"recovered: {scores[0]:.1f} dB", f"degree 0: {scores[1]:.1f} dB")
