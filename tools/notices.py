@@ -81,7 +81,7 @@ def debian_package(name: str) -> Package | None:
         path = Path("/usr/share/common-licenses") / common
         if path.is_file():
             text += f"\n\n{path}:\n\n{path.read_text(encoding='utf-8')}"
-    sources = f"https://sources.debian.org/src/{source}/{source_version}/"
+    sources = f"source package {source} {source_version} of Debian"
     return Package(package, version, sources, text)
 
 
