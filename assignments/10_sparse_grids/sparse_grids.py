@@ -170,11 +170,11 @@ def sample_sparse(values, row, weight):
     return sum(w[:, None] * padded[r] for w, r in zip(weight, row, strict=True))
 
 
-def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples) -> Values:
+def sample_sparse_adjoint(voxel_count: int, row: Corners, weight: Corners, g: Samples) -> Values:
     """The adjoint of `sample_sparse`: scatters the derivative of each sample to its voxels.
 
     Args:
-        count: V, the number of active voxels.
+        voxel_count: V, the number of active voxels.
         row, weight: (8, M), as for `sample_sparse`; row -1 for an absent voxel.
         g: (M, C), the derivative of some loss with respect to each sample.
 
@@ -184,7 +184,7 @@ def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples)
     """
     # >>> solution 10.3
     known = row >= 0
-    d_values = np.zeros((count, g.shape[1]))
+    d_values = np.zeros((voxel_count, g.shape[1]))
     parts = weight[:, :, None] * g
     np.add.at(d_values, row[known], parts[known])
     return d_values
@@ -192,7 +192,7 @@ def sample_sparse_adjoint(count: int, row: Corners, weight: Corners, g: Samples)
 
 
 def prune_and_dilate(
-    n: int, voxels: Voxels, row: Corners, share: Corners, threshold: float, steps: int
+    n: int, voxels: Voxels, row: Corners, share: Corners, threshold: float, grow: int
 ) -> Voxels:
     """Prune voxels of small contribution, and dilate the remaining set.
 
@@ -203,7 +203,7 @@ def prune_and_dilate(
             contribution to a pixel; row -1 for an absent voxel. Rows may occur many times, or
             never.
         threshold: a voxel is kept if its *largest* share is more than this.
-        steps: each kept voxel adds all voxels of the cube whose three indices differ from its own
+        grow: each kept voxel adds all voxels of the cube whose three indices differ from its own
             by at most this; 0 or more.
 
     Returns:
@@ -215,8 +215,8 @@ def prune_and_dilate(
     np.maximum.at(worth, row[row >= 0], share[row >= 0])
     stays = voxels[worth > threshold]
     active = np.zeros((n, n, n), bool)
-    for away in np.ndindex(3 * (2 * steps + 1,)):
-        moved = stays + np.array(away) - steps
+    for away in np.ndindex(3 * (2 * grow + 1,)):
+        moved = stays + np.array(away) - grow
         inside = ((moved >= 0) & (moved < n)).all(axis=1)
         active[tuple(moved[inside].T)] = True
     return np.argwhere(active).astype(np.int64)

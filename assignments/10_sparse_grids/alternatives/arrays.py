@@ -47,14 +47,14 @@ def skip_empty(leaf, first, stride, count):
     return wanted
 
 
-def sample_sparse_adjoint(count, row, weight, g):
+def sample_sparse_adjoint(voxel_count, row, weight, g):
     # Missing voxels hand theirs to a row more, which is then left out.
-    where = np.where(row < 0, count, row).ravel()
-    sums = [np.bincount(where, (weight * c).ravel(), count + 1)[:count] for c in g.T]
+    where = np.where(row < 0, voxel_count, row).ravel()
+    sums = [np.bincount(where, (weight * c).ravel(), voxel_count + 1)[:voxel_count] for c in g.T]
     return np.stack(sums, axis=1)
 
 
-def prune_and_dilate(n, voxels, row, share, threshold, steps):
+def prune_and_dilate(n, voxels, row, share, threshold, grow):
     flat, s = row.ravel(), share.ravel()
     enough = np.zeros(len(voxels), bool)
     enough[flat[(s > threshold) & (flat >= 0)]] = True
@@ -62,8 +62,8 @@ def prune_and_dilate(n, voxels, row, share, threshold, steps):
     i, j, k = voxels[enough].T
     active[i, j, k] = True
     for axis in range(3):
-        wide = np.pad(np.moveaxis(active, axis, 0), ((steps, steps), (0, 0), (0, 0)))
-        grown = np.any([wide[a : a + n] for a in range(2 * steps + 1)], axis=0)
+        wide = np.pad(np.moveaxis(active, axis, 0), ((grow, grow), (0, 0), (0, 0)))
+        grown = np.any([wide[a : a + n] for a in range(2 * grow + 1)], axis=0)
         active = np.moveaxis(grown, 0, axis)
     return np.stack(np.nonzero(active), axis=1).astype(np.int64)
 

@@ -56,21 +56,21 @@ def skip_empty(leaf, first, stride, count):
     return result
 
 
-def sample_sparse_adjoint(count, row, weight, g):
-    padded = np.zeros((count + 1, g.shape[1]))
+def sample_sparse_adjoint(voxel_count, row, weight, g):
+    padded = np.zeros((voxel_count + 1, g.shape[1]))
     for e in range(len(row)):
         np.add.at(padded, row[e], weight[e][:, None] * g)
     return padded[:-1]
 
 
-def prune_and_dilate(n, voxels, row, share, threshold, steps):
+def prune_and_dilate(n, voxels, row, share, threshold, grow):
     worth = np.full(len(voxels), -np.inf)
     order = np.argsort(share, axis=None)
     rows, sorted_shares = row.ravel()[order], share.ravel()[order]
     real = rows != -1
     worth[rows[real]] = sorted_shares[real]  # ascending: the largest is written last
     kept = {tuple(v) for v, w in zip(voxels.tolist(), worth, strict=True) if w > threshold}
-    for _ in range(steps):
+    for _ in range(grow):
         kept = {
             (i + a, j + b, k + c)
             for i, j, k in kept

@@ -53,18 +53,18 @@ def skip_empty(leaf, first, stride, count):
     return out
 
 
-def sample_sparse_adjoint(count, row, weight, g):
-    out = [[0.0] * g.shape[1] for _ in range(count)]
+def sample_sparse_adjoint(voxel_count, row, weight, g):
+    out = [[0.0] * g.shape[1] for _ in range(voxel_count)]
     given = g.tolist()
     for rows, weights in zip(row.tolist(), weight.tolist(), strict=True):
         for m, (v, w) in enumerate(zip(rows, weights, strict=True)):
             if v != -1:
                 for c, value in enumerate(given[m]):
                     out[v][c] += w * value
-    return np.array(out, dtype=np.float64).reshape(count, g.shape[1])
+    return np.array(out, dtype=np.float64).reshape(voxel_count, g.shape[1])
 
 
-def prune_and_dilate(n, voxels, row, share, threshold, steps):
+def prune_and_dilate(n, voxels, row, share, threshold, grow):
     best = {}
     for v, s in zip(row.ravel().tolist(), share.ravel().tolist(), strict=True):
         if v >= 0 and s > best.get(v, 0.0):
@@ -72,9 +72,9 @@ def prune_and_dilate(n, voxels, row, share, threshold, steps):
     found = set()
     for v, (i, j, k) in enumerate(voxels.tolist()):
         if best.get(v, 0.0) > threshold:
-            for a in range(max(0, i - steps), min(n, i + steps + 1)):
-                for b in range(max(0, j - steps), min(n, j + steps + 1)):
-                    for c in range(max(0, k - steps), min(n, k + steps + 1)):
+            for a in range(max(0, i - grow), min(n, i + grow + 1)):
+                for b in range(max(0, j - grow), min(n, j + grow + 1)):
+                    for c in range(max(0, k - grow), min(n, k + grow + 1)):
                         found.add((a, b, c))
     return np.array(sorted(found), dtype=np.int64).reshape(-1, 3)
 
