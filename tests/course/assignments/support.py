@@ -13,7 +13,6 @@ there meanwhile, and one bundle judges many submissions at a grader's desk as we
 from __future__ import annotations
 
 import functools
-import io
 import re
 import tempfile
 from collections.abc import Collection
@@ -36,7 +35,7 @@ from photograd_course.viz.handout import Facts
 from photograd_course.viz.style import HANDOUT_DPI, save_figure
 from PIL import Image
 
-from course.assignments.kept_verdicts import verdict_on
+from course.assignments.kept import decides_figure, kept, verdict_on
 from support.tree import ROOT
 
 ASSIGNMENTS = ROOT / "assignments"
@@ -130,19 +129,34 @@ def load_figures(folder: Path) -> ModuleType:
 
 
 @functools.cache
-def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, Facts]:
-    """A figure, None of a mutant, and its facts, computed from the solution or from a mutant."""
-    text = source(folder) if mutant is None else apply_mutant(folder, mutant)
+def draw(folder: Path, figure: str, text: str) -> tuple[Any, Facts]:
+    """A figure, None of a mutant, and its facts, computed from the text of a module."""
     bundle = bundle_of(folder)
     module = load_beside(bundle.manifest.module, text, bundle.brought)
-    with np.errstate(all="ignore" if mutant else "warn"):
+    right = text == source(folder)
+    with np.errstate(all="warn" if right else "ignore"):
         drawn, facts = load_figures(folder).FIGURES[figure](module)
-    return None if mutant else drawn, facts
+    return drawn if right else None, facts
 
 
 def figure_facts(folder: Path, figure: str, mutant: str | None = None) -> Facts:
-    """The facts behind a caption."""
-    return draw(folder, figure, mutant)[1]
+    """The facts behind a caption, computed from the solution or from a mutant."""
+    text = source(folder) if mutant is None else apply_mutant(folder, mutant)
+    decides = ["facts", *decides_figure(folder, figure, text)]
+    return kept(folder, decides, lambda: draw(folder, figure, text)[1])
+
+
+def picture_difference(folder: Path, figure: str) -> float:
+    """By how much a picture differs from the one that its script draws, in gray levels."""
+
+    def find() -> float:
+        with tempfile.TemporaryDirectory() as place:
+            drawn, _ = draw(folder, figure, source(folder))
+            again = _pixels(write_picture(folder, drawn, Path(place) / f"{figure}.png"))
+        stored = _pixels(folder / "figures" / f"{figure}.png")
+        return float(np.abs(stored - again).mean()) if stored.shape == again.shape else np.inf
+
+    return kept(folder, ["picture", *decides_figure(folder, figure, source(folder))], find)
 
 
 def red(facts: Facts) -> Facts:
@@ -249,14 +263,10 @@ class AssignmentTests:
     def test_a_picture_is_the_one_that_its_script_draws(self, figure: str) -> None:
         path = self.folder / "figures" / f"{figure}.png"
         assert path.stat().st_size < PICTURE_BYTES
-        with tempfile.TemporaryDirectory() as place:
-            drawn, _ = draw(self.folder, figure, None)
-            again = _pixels(write_picture(self.folder, drawn, Path(place) / path.name).read_bytes())
-        kept = _pixels(path.read_bytes())
-        assert kept.shape == again.shape
-        assert np.abs(kept - again).mean() < PICTURE_DIFFERENCE
-        assert kept.shape[1] >= 600
-        assert kept.std() > 5.0
+        assert picture_difference(self.folder, figure) < PICTURE_DIFFERENCE
+        stored = _pixels(path)
+        assert stored.shape[1] >= 600
+        assert stored.std() > 5.0
 
     def test_the_handout_shows_every_figure_and_numbers_its_equations(self) -> None:
         text = (self.folder / "handout.md").read_text("utf-8")
@@ -290,5 +300,6 @@ def write_picture(folder: Path, figure: Any, path: Path) -> Path:
     return save_figure(figure, path, getattr(load_figures(folder), "DPI", HANDOUT_DPI))
 
 
-def _pixels(data: bytes) -> np.ndarray:
-    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.float64)
+def _pixels(path: Path) -> np.ndarray:
+    with Image.open(path, formats=["PNG"]) as picture:
+        return np.asarray(picture.convert("RGB"), dtype=np.float64)
