@@ -117,6 +117,17 @@ def test_pages_open_without_a_network(page: str, tmp_path: Path) -> None:
     assert fetched == []
 
 
+@pytest.mark.exhaustive
+def test_it_is_searched_without_a_network(tmp_path: Path) -> None:
+    address = (built() / "search.html").as_uri()
+    shown, said = browse(f"{address}?q=visible+normals", tmp_path)
+    assert said == []
+    _, _, results = shown.partition('id="search-results"')
+    found = re.findall(r'<a href="([^"#]+\.html)[^"]*" data-score', results)
+    assert "handouts/04_reflectance.html" in found
+    assert [page for page in found if not (BUILT / page).is_file()] == []
+
+
 def test_settings_of_the_book_ask_for_nothing_from_elsewhere() -> None:
     code = "import json, conf; print(json.dumps([conf.html_static_path, conf.html_css_files, "
     code += "conf.html_show_search_summary]))"
