@@ -1,6 +1,7 @@
-"""A screenshot of `photograd view`: `python docs/figures_viewer.py DEMO`, made by `photograd demo`.
+"""Screenshots of `photograd view`: `python docs/figures_viewer.py DEMO`, made by `photograd demo`.
 
-Headless Chromium opens the page at 1280 x 720, clicks, and writes docs/images/viewer.jpg.
+Headless Chromium opens the page at 1280 x 720, clicks, and writes docs/images/viewer.jpg; then it
+chooses the layer of gradients, and writes docs/images/viewer_gradient.jpg.
 Needs viser, and chromium on the PATH.
 """
 
@@ -21,7 +22,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from tests.commands.browser import Browser, chromium, free_port, photograd, waited  # noqa: E402
 
-PICTURE = ROOT / "docs" / "images" / "viewer.jpg"
+IMAGES = ROOT / "docs" / "images"
 SIZE = 1280, 720
 CLICK = 600, 400
 """Where the picture is clicked on."""
@@ -37,8 +38,14 @@ def settled(browser: Browser) -> Any:
     return waited(browser.picture)
 
 
+def store(pixels: Any, name: str) -> None:
+    """Write a screenshot."""
+    assert pixels.shape == (SIZE[1], SIZE[0], 3)
+    Image.fromarray(pixels.astype(np.uint8)).save(IMAGES / name, quality=88, optimize=True)
+
+
 def main() -> None:
-    """Take the screenshot."""
+    """Take the screenshots."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("demo", type=Path)
     demo = parser.parse_args().demo
@@ -50,10 +57,11 @@ def main() -> None:
         # That Chromium has no GPU, a notice says in a corner; it is no part of the page.
         browser.value(f"document.querySelectorAll({CLOSES!r}).forEach(e=>e.click())")
         browser.click(*CLICK)
-        pixels = settled(browser)
+        store(settled(browser), "viewer.jpg")
         assert "Voxel (" in browser.text()
-    assert pixels.shape == (SIZE[1], SIZE[0], 3)
-    Image.fromarray(pixels.astype(np.uint8)).save(PICTURE, quality=88, optimize=True)
+        browser.choose("Layer", "gradient")
+        browser.says("the largest along each ray")
+        store(settled(browser), "viewer_gradient.jpg")
 
 
 if __name__ == "__main__":
