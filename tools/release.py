@@ -39,6 +39,10 @@ You need Python 3.10 or newer: no compiler, no administrator, no network after t
 
 The wheel holds every assignment; `kits/` holds the same folders as archives, for a course that
 hands them out one by one. `site/{pages}/index.html` lists the handouts for reading.
+
+No assignment needs the C++ core. Where it is installed, as `pip install photograd-*.whl` does from
+the wheel for your Python and system if there is one here, the explorations use it: they compare
+your results with it, and show more.
 """
 
 

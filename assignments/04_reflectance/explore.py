@@ -3,8 +3,9 @@
 # Renders a chart of your material, its lobe and the derivative with respect to roughness; recovers
 # the roughness and the color of a ball from its image. Where the C++ core is installed, it says by
 # how much the core's image differs from yours. Never graded. Run it as `python explore.py`;
-# `--roughness`, `--metalness` and `--start` (the initial roughness of the fit) change the ball,
-# `--pixels` and `--steps` the amount of work.
+# `--roughness` and `--metalness` change the ball, `--start` the initial roughness of the fit,
+# `--pixels` and `--steps` the amount of work. The metalness is known, unless `--start-metalness`
+# says from where the fit starts to look for it.
 
 # %%
 import importlib
@@ -16,7 +17,7 @@ from photograd_course.explore import option
 
 pixels, steps = option("pixels", 64), option("steps", 60)
 rough, metal_share = option("roughness", 0.35), option("metalness", 0.0)
-start = option("start", 0.7)
+start, start_metal = option("start", 0.7), option("start-metalness", metal_share)
 COLOR = np.array([0.75, 0.3, 0.1])
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
 
@@ -63,24 +64,24 @@ print(f"ball: {scene[0].sum()} pixels, roughness {rough:g}, metalness {metal_sha
 # %% [markdown]
 # ## A fit
 # Mean squared error against the image; Adam as in assignment 01. Roughness is clamped to 0.045 to
-# 1, colors to 0 to 1; the metalness is known.
+# 1, colors and metalness to 0 to 1. A metalness that starts from the truth is left there.
 
 # %%
 target = picture(scene, COLOR, metal_share, rough, mine.gltf)
-x = np.array([0.5, 0.5, 0.5, start])
-first, second = np.zeros(4), np.zeros(4)
+x = np.array([0.5, 0.5, 0.5, start, start_metal])
+first, second = np.zeros(5), np.zeros(5)
 trail = [x]
 for k in range(1, steps + 1):
-    error = picture(scene, x[:3], metal_share, x[3], mine.gltf) - target
-    d_color, _, slope_rough, _ = pulled(scene, x[:3], metal_share, x[3], 2 * error / error.size)
-    slope = np.append(d_color, slope_rough)
+    error = picture(scene, x[:3], x[4], x[3], mine.gltf) - target
+    d_color, d_metal, d_rough, _ = pulled(scene, x[:3], x[4], x[3], 2 * error / error.size)
+    slope = np.array([*d_color, d_rough, 0.0 if start_metal == metal_share else d_metal])
     first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
     x = x - 0.03 * first / (1 - 0.9**k) / (np.sqrt(second / (1 - 0.99**k)) + 1e-12)
-    x = np.clip(x, [0, 0, 0, 0.045], 1)
+    x = np.clip(x, [0, 0, 0, 0.045, 0], 1)
     trail.append(x)
 trail = np.array(trail)
-print(f"fit: roughness {x[3]:.3f}, color {np.round(x[:3], 3)}")
-print(f"truth: roughness {rough:.3f}, color {COLOR}")
+for name, (*color, r, m) in {"fit": x, "truth": [*COLOR, rough, metal_share]}.items():
+    print(f"{name}: roughness {r:.3f}, color {np.round(color, 3)}, metalness {m:.3f}")
 
 # %% [markdown]
 # ## The furnace test, and the C++ core

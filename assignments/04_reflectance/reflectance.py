@@ -173,7 +173,7 @@ def ggx_lobe(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
 
 
 def ggx_pdf(wo: Directions, wi: Directions, roughness: Numbers) -> Numbers:
-    """The density of `sample_ggx` per solid angle.
+    """The density of `sample_ggx` per solid angle, above the surface.
 
     Args:
         wo, wi: (N, 3).
@@ -204,8 +204,8 @@ def sample_ggx(wo: Directions, roughness: Numbers, u2: Pairs) -> Directions:
             use no other random numbers.
 
     Returns:
-        (N, 3), unit vectors with the density `ggx_pdf`; some may lie below the surface, where
-        that density is 0. Handout equations (14) to (16).
+        (N, 3), unit vectors, whose density above the surface is `ggx_pdf`; some may lie below
+        it. Handout equations (14) to (16).
     """
     # >>> solution 04.4
     stretch = np.stack([roughness**2, roughness**2, np.ones(len(wo))], axis=1)

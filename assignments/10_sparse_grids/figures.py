@@ -232,7 +232,7 @@ def fig5_topology(module: ModuleType) -> tuple[Figure, Facts]:
         ),
         "pruned later it loses less": Fact(gap[1:].max() < gap[0], red="fit_never_grows"),
         "dilated, it is better than all voxels": Fact(
-            scores[1].min() - dense, 0.5, 10.0, red="fit_never_grows"
+            scores[1].min() - dense, 1.0, 10.0, red="fit_never_grows"
         ),
     }
     figure, axes = subplots(7.0, 2.6)

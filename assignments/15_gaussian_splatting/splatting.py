@@ -396,7 +396,7 @@ def fit(gaussians, views, steps, rng, background, max_count, every=50, watch=Non
             watch(step, gaussians, losses[step])
         gradient = back(2 * error / error[..., 0].size)
         absgrad = np.linalg.norm(gradient["absgrad"], axis=1)
-        # The loss is a mean over pixels: with this factor a threshold holds for any image size.
+        # From pixels to halves of an image, so that a threshold holds for any image size.
         total += absgrad * max(camera["width"], camera["height"]) / 2
         times += absgrad > 0
         gaussians = adam.step(gaussians, gradient)

@@ -96,7 +96,8 @@ def compare_samples(t, wo, r, shares):
     "04.4.mirror",
     points=2,
     tolerance=EXACT,
-    hint="mirror: wi = 2 (wo . h) h - wo, with h a unit vector that has z > 0 and wo . h > 0",
+    hint="mirror: wi = 2 (wo . h) h - wo, with h a unit vector that has z > 0 and wo . h > 0; "
+    "without alpha on x and y, h of (16) is no facet that the viewer sees",
     sole="what every single sample must satisfy",
 )
 def samples_are_mirrored_at_facets(t):

@@ -133,8 +133,8 @@ def two_rounds(t, *given):
     "10.5.chain",
     points=4,
     tolerance=CHAINED,
-    hint="handout, equations (14) and (15): between rounds prune, grow, carry over, and start "
-    "Adam anew",
+    hint="handout, equations (14) and (15): between rounds prune, grow, carry over (for voxels "
+    "that are pruned and grow again, too), and start Adam anew",
     sole="carries values over from one list of voxels to the next",
 )
 def rounds_can_be_chained(t):

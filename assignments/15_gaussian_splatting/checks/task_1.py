@@ -78,7 +78,7 @@ def symmetric_positive_and_free_of_length(t):
     sole="the derivative itself, without the reference",
 )
 def the_shape_agrees_with_differences(t):
-    """Moving q or a scale moves your covariance as your back says, group by group."""
+    """Moving q or a scale moves your covariance as your back says, for each of the two."""
     q, s = t.rng.normal(size=(3, 4)), t.rng.uniform(-0.7, 0.7, (3, 3))
     g = random_cotangent(t.rng, (3, 3, 3))
     d_q, d_s = spread_back(t, q, s, g)

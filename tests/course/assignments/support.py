@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import functools
 import re
-import tempfile
 from collections.abc import Collection
 from pathlib import Path
 from types import ModuleType
@@ -32,10 +31,10 @@ from photograd_course.build.regions import strip_solution
 from photograd_course.build.rules import reading_findings
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.viz.handout import Facts
-from photograd_course.viz.style import HANDOUT_DPI, save_figure
-from PIL import Image
+from photograd_course.viz.style import HANDOUT_DPI
 
 from course.assignments.kept import decides_figure, kept, verdict_on
+from course.assignments.pictures import difference, pixels
 from support.tree import ROOT
 
 ASSIGNMENTS = ROOT / "assignments"
@@ -150,11 +149,9 @@ def picture_difference(folder: Path, figure: str) -> float:
     """By how much a picture differs from the one that its script draws, in gray levels."""
 
     def find() -> float:
-        with tempfile.TemporaryDirectory() as place:
-            drawn, _ = draw(folder, figure, source(folder))
-            again = _pixels(write_picture(folder, drawn, Path(place) / f"{figure}.png"))
-        stored = _pixels(folder / "figures" / f"{figure}.png")
-        return float(np.abs(stored - again).mean()) if stored.shape == again.shape else np.inf
+        drawn, _ = draw(folder, figure, source(folder))
+        dpi = getattr(load_figures(folder), "DPI", HANDOUT_DPI)
+        return difference(folder / "figures" / f"{figure}.png", drawn, dpi)
 
     return kept(folder, ["picture", *decides_figure(folder, figure, source(folder))], find)
 
@@ -264,7 +261,7 @@ class AssignmentTests:
         path = self.folder / "figures" / f"{figure}.png"
         assert path.stat().st_size < PICTURE_BYTES
         assert picture_difference(self.folder, figure) < PICTURE_DIFFERENCE
-        stored = _pixels(path)
+        stored = pixels(path)
         assert stored.shape[1] >= 600
         assert stored.std() > 5.0
 
@@ -293,13 +290,3 @@ def assert_everything(outcomes: list[Outcome]) -> None:
     assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
     margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
     assert {id: value for id, value in margins.items() if value > 0.1} == {}
-
-
-def write_picture(folder: Path, figure: Any, path: Path) -> Path:
-    """Write a figure as the handout has it."""
-    return save_figure(figure, path, getattr(load_figures(folder), "DPI", HANDOUT_DPI))
-
-
-def _pixels(path: Path) -> np.ndarray:
-    with Image.open(path, formats=["PNG"]) as picture:
-        return np.asarray(picture.convert("RGB"), dtype=np.float64)

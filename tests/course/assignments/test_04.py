@@ -228,6 +228,17 @@ def test_diagnoses_fit_one_answer_alone(solution) -> None:
     assert shares @ (lobe * wi[:, 2] / wrong) == pytest.approx(0.086, abs=5e-4)
 
 
+def test_rough_lobes_are_largest_beyond_the_mirror_direction(solution) -> None:
+    angle = np.radians(np.linspace(0.0, 89.9, 900))
+    wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
+    wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (900, 1))
+    largest = [
+        np.degrees(angle[solution.ggx_lobe(wo, wi, np.full(900, rough)).argmax()])
+        for rough in (0.35, 0.5, 0.7)
+    ]
+    np.testing.assert_allclose(largest, [46, 49, 90], atol=0.5)
+
+
 def test_predictions_come_true(solution) -> None:
     seen = solution.furnace(mirrors(solution, 1.0), np.array([1.0]))[0, 0]
     assert seen == pytest.approx(1 - np.log(2))
@@ -258,7 +269,14 @@ def test_generated_questions_have_the_answers_that_their_reasons_give(solution) 
             assert abs(answer) > 0.01  # so that a relative tolerance means something
 
 
-@pytest.mark.parametrize("options", [(), ("--roughness", "0.6", "--metalness", "0.5")])
+@pytest.mark.parametrize(
+    "options",
+    [
+        (),
+        ("--roughness", "0.6", "--metalness", "0.5"),
+        ("--roughness", "0.4", "--metalness", "0.5", "--start-metalness", "0"),
+    ],
+)
 def test_the_exploration_runs_and_says_what_it_did(
     tmp_path: Path, options: tuple[str, ...]
 ) -> None:
@@ -271,5 +289,7 @@ def test_the_exploration_runs_and_says_what_it_did(
     found = float(ran.stdout.partition("fit: roughness ")[2].partition(",")[0])
     assert found == pytest.approx(rough, abs=0.05)
     assert "ball: 1" in ran.stdout
+    metal = ran.stdout.partition("fit: ")[2].partition("metalness ")[2].split()[0]
+    assert float(metal) == pytest.approx(0.5 if options else 0.0, abs=0.05)
     assert "core" in ran.stdout
     assert (tmp_path / "reflectance.png").stat().st_size > 5_000

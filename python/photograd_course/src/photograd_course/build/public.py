@@ -96,8 +96,8 @@ def readme(manifest: Manifest, handout: str) -> str:
 > task's points.
 >
 > **Every function** leaves its arguments as they are, reads arrays of any memory layout (read-only
-> ones and views too), and gives equal answers to equal calls, for one row as for many but
-> for rounding. Hidden checks ask for it.
+> ones and views too), and gives equal answers to equal calls. A row alone gets what it gets
+> among others, up to rounding. Hidden checks ask for all this.
 """
     return f"{title}\n{work}{rest}"
 

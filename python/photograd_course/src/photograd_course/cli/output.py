@@ -39,7 +39,11 @@ def emit(result: Mapping[str, object], *, as_json: bool, title: str | None = Non
     plain = {str(name): _plain(str(name), value) for name, value in result.items()}
     console = Console(stderr=as_json, highlight=False)
     for table in _tables(plain, title):
-        console.print(table)
+        roomy = console.options.update(max_width=100_000)
+        if table.show_header or console.measure(table, options=roomy).minimum <= console.width:
+            console.print(table)
+        else:
+            console.print(_unbroken(table), soft_wrap=True)
     if as_json:
         print_json(json.dumps(plain, allow_nan=False))
 
@@ -92,6 +96,16 @@ def _tables(result: Mapping[str, object], title: str | None) -> list[Table]:
         else:
             pairs.add_row(name, Text(_shown(value)))
     return [table for table in (pairs, *more) if table.row_count]
+
+
+def _unbroken(pairs: Table) -> Text:
+    """Names and values on lines that may be too long: a path that is broken cannot be copied."""
+    names, values = (list(column.cells) for column in pairs.columns)
+    wide = max(len(str(name)) for name in names)
+    lines = [Text(str(pairs.title), "italic")] if pairs.title else []
+    for name, value in zip(names, values, strict=True):
+        lines.append(Text.assemble("  ", (str(name).ljust(wide), "bold"), "    ", str(value)))
+    return Text("\n").join(lines)
 
 
 def _rows(name: str, rows: list[Mapping[str, object]]) -> Table:
