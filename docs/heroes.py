@@ -1,9 +1,8 @@
 """Large pictures without noise: `python docs/heroes.py NAME [--spp N]` draws one of SCENES.
 
-Writes docs/images/hero_NAME.jpg (960 x 540) after each pass, and what it took into
+Writes docs/images/hero_NAME.jpg (1280 x 720) after each pass, and what it took into
 docs/images/heroes.toml, with the processor hours of all of them; `--size` tries a scene in another
-size. Nothing is denoised: what noise is left is that of the samples. The scenes caustics and clouds
-need more time than the two on the page, and have no picture there yet.
+size. Nothing is denoised: what noise is left is that of the samples.
 """
 
 from __future__ import annotations
@@ -13,6 +12,7 @@ import resource
 import sys
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ import hero_scenes
 import numpy as np
 from numpy.typing import NDArray
 from photograd.frame.tone_mapping import tone_map
-from photograd.transport import Accumulation, PathOptions, PathTracer, PhotonMap
+from photograd.transport import Accumulation, PathOptions, PathTracer, PhotonMap, Scene
 from photograd.transport.particles import ParticleOptions
 from photograd_course.color import srgb_encode
 from PIL import Image, ImageDraw, ImageFont
@@ -28,7 +28,7 @@ from PIL import Image, ImageDraw, ImageFont
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
 RECORD = IMAGES / "heroes.toml"
-WIDTH, HEIGHT = 960, 540
+WIDTH, HEIGHT = 1280, 720
 QUALITY = 92
 PASS = 16  # samples a pixel between two times that the picture is written
 PARTICLES = 1 << 22  # of each map of photons
@@ -56,10 +56,14 @@ def processor_seconds() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def caustics(tracer: PathTracer, maps: int, spp: int) -> Array:
-    """What light adds that came through or off glass, as particles find it, (H, W, 3)."""
-    options = ParticleOptions(max_depth=3)
-    total = np.zeros((tracer.scene.camera.height, tracer.scene.camera.width, 3))
+def caustics(scene: Scene, maps: int, spp: int) -> Array:
+    """What lights without a surface add through or off glass, as particles find it, (H, W, 3).
+
+    Paths from the camera find the sky behind glass themselves.
+    """
+    tracer = PathTracer(replace(scene, environment=None))
+    options = ParticleOptions(max_depth=8)
+    total = np.zeros((scene.camera.height, scene.camera.width, 3))
     for seed in range(maps):
         photons = PhotonMap(
             tracer, PARTICLES, radius=NARROW, seed=seed, options=options, direct=False
@@ -72,10 +76,11 @@ def draw(name: str, size: tuple[int, int], spp: int, target: Path) -> Iterator[d
     """Trace a scene in passes, and write its picture after each; yields what it took so far."""
     hero = hero_scenes.SCENES[name]
     before = processor_seconds()
-    tracer = PathTracer(hero.scene(*size))
+    scene = hero.scene(*size)
+    tracer = PathTracer(scene)
     options = PathOptions(max_depth=hero.max_depth)
     sums = Accumulation.empty(size[1], size[0])
-    extra = caustics(tracer, hero.photon_maps, 4) if hero.photon_maps else 0.0
+    extra = caustics(scene, hero.photon_maps, 2) if hero.photon_maps else 0.0
     while sums.count < spp:
         tracer.add_samples(sums, min(PASS, spp - sums.count), seed=1, options=options)
         picture = shown(sums.mean + extra, hero.exposure)

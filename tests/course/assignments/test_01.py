@@ -47,6 +47,16 @@ def steps_of(tau: float, f, grad, x0, goal: float, most: int) -> int:
     return most
 
 
+def test_check_values_of_a_run_that_leaves_the_domain() -> None:
+    def f(x: float) -> float:
+        return x - math.log(x) if x > 0 else math.nan
+
+    x, values, wrong = solution().gd_1d(f, lambda x: 1 - 1 / x, 1.2, 12.0, 1)
+    np.testing.assert_allclose(x, [1.2, -0.8])
+    np.testing.assert_allclose(values, [1.017678, math.nan], atol=6e-7)
+    assert wrong
+
+
 @pytest.mark.parametrize("name", ["bowl", "valley", "quartic", "logistic", "two walls"])
 def test_the_best_fixed_step_needs_as_many_steps_as_stated(name: str) -> None:
     module = checks()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar
 
 Value = TypeVar("Value", int, float, str)
@@ -19,11 +20,21 @@ def option(name: str, default: Value) -> Value:
 
     Raises:
         ValueError: what follows is no such number.
+        SystemExit: ``--help`` is given; the text at the head of the script has been printed.
     """
     words = sys.argv[1:]
+    if "--help" in words:
+        sys.stdout.write(introduction(Path(sys.argv[0]).read_text("utf-8")))
+        raise SystemExit
     if f"--{name}" not in words:
         return default
     return type(default)(words[words.index(f"--{name}") + 1])
+
+
+def introduction(script: str) -> str:
+    """The first cell of a script's text, its markdown, without the marks."""
+    head = script.partition("# %% [markdown]\n")[2].partition("\n\n")[0]
+    return "".join(f"{line.removeprefix('#').lstrip(' #')}\n" for line in head.splitlines())
 
 
 def by_the_core(compute: Callable[[], Result]) -> Result | None:
