@@ -109,7 +109,8 @@ for name, grow in (("pruned and dilated", 1), ("pruned alone", 0)):
 
 # %% [markdown]
 # ## Memory
-# Bytes of your grid in both forms: dense, or octree, rows and values together.
+# Bytes of your grid in both forms: dense, or an octree of the active voxels (`march` builds a
+# larger one, of all cells that they affect), rows and values together.
 
 # %%
 n, voxels, values = found["pruned and dilated"]

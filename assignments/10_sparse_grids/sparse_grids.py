@@ -99,7 +99,7 @@ def skip_empty(leaf: Leaf, first: Vectors, stride: Vectors, count: int) -> Wante
         leaf: a function from points (M, 3) to (full, low, side), as for `octree_leaf`. The points
             are counted: look up as few as you can.
         first: (R, 3), sample 0 of each ray, in cells.
-        stride: (R, 3), from one sample to the next; single components may be zero.
+        stride: (R, 3), from one sample to the next; one or two components may be zero.
         count: samples per ray; all lie inside the cube.
 
     Returns:

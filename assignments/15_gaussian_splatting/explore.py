@@ -195,7 +195,8 @@ scores = [decibels(got, photo) for got, (_, photo) in zip(shown, unseen, strict=
 plain = [decibels(background, photo) for _, photo in unseen]
 print(
     f"\nfit:     {done} steps in {time.perf_counter() - began:.0f} s, {len(scene['means'])} "
-    f"Gaussians, {np.mean(scores):.1f} dB on held-out views (one color has {np.mean(plain):.1f} dB)"
+    f"Gaussians, {np.mean(scores):.1f} dB over all held-out views "
+    f"(one color has {np.mean(plain):.1f} dB)"
 )
 np.savez_compressed("scene.npz", background=background, **scene)
 

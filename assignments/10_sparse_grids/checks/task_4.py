@@ -66,10 +66,10 @@ def the_largest_share_decides(t):
     "10.4.grown",
     points=4,
     hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
-    sole="closed forms: one voxel, a corner, two steps at once",
+    sole="closed forms: one voxel, a corner, growth by two",
 )
 def one_voxel_grows_into_a_cube(t):
-    """One voxel becomes a cube of side 2 s + 1, clipped at the border; two steps are twice one."""
+    """One voxel becomes a cube of side 2 grow + 1, cut off at the border; by 2 is twice by 1."""
     n = 8
     for steps in (1, 2):
         middle = t.rng.integers(steps, n - steps, 3)
@@ -78,7 +78,7 @@ def one_voxel_grows_into_a_cube(t):
             np.meshgrid(*[np.arange(m - steps, m + steps + 1) for m in middle], indexing="ij"),
             axis=-1,
         ).reshape(-1, 3)
-        same_voxels(t, f"one voxel and {steps} steps", n, got, around)
+        same_voxels(t, f"one voxel, grow = {steps}", n, got, around)
         corner = np.array([[0, n - 1, 0]])
         got = grown(t, n, corner, steps)
         right = (steps + 1) ** 3
@@ -89,7 +89,7 @@ def one_voxel_grows_into_a_cube(t):
     parts = np.concatenate([grown(t, n, voxels[k : k + 1], 1) for k in range(6)])
     once = grown(t, n, voxels, 1)
     same_voxels(t, "six voxels grow as each alone", n, once, np.unique(parts, axis=0))
-    same_voxels(t, "two steps at once", n, grown(t, n, voxels, 2), grown(t, n, once, 1))
+    same_voxels(t, "by 2, against by 1 twice", n, grown(t, n, voxels, 2), grown(t, n, once, 1))
 
 
 def photographed(t, n, voxels, values, rays):

@@ -280,7 +280,7 @@ def test_the_exploration_fits_a_capture(tmp_path: Path, alone: bool) -> None:
     with Image.open(tmp_path / "banana.png") as image:
         assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
     said = done.stdout
-    new = float(said.split(" dB on held-out views")[0].rsplit(maxsplit=1)[1])
+    new = float(said.split(" dB over all held-out views")[0].rsplit(maxsplit=1)[1])
     nothing = float(said.split("one color has ")[1].split(" dB")[0])
     assert new > nothing + 1
     assert not (alone and "core" in said)
