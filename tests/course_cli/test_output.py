@@ -54,6 +54,15 @@ def test_markup_in_values_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) 
     assert captured.err == "see [red]this[/] and that\n"
 
 
+def test_a_path_longer_than_the_terminal_is_not_broken(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "40")
+    path = "/".join(["a_folder"] * 12)
+    emit({"archive": path, "files": 3}, as_json=False, title="Submission")
+    assert capsys.readouterr().out == f"Submission\n  archive    {path}\n  files      3\n"
+
+
 def test_an_unknown_type_is_named_and_nothing_is_printed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
