@@ -73,8 +73,8 @@ first, second = np.zeros(5), np.zeros(5)
 trail = [x]
 for k in range(1, steps + 1):
     error = picture(scene, x[:3], x[4], x[3], mine.gltf) - target
-    d_color, d_metal, d_rough, _ = pulled(scene, x[:3], x[4], x[3], 2 * error / error.size)
-    slope = np.array([*d_color, d_rough, 0.0 if start_metal == metal_share else d_metal])
+    d_color, slope_metal, slope_rough, _ = pulled(scene, x[:3], x[4], x[3], 2 * error / error.size)
+    slope = np.array([*d_color, slope_rough, 0 if start_metal == metal_share else slope_metal])
     first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
     x = x - 0.03 * first / (1 - 0.9**k) / (np.sqrt(second / (1 - 0.99**k)) + 1e-12)
     x = np.clip(x, [0, 0, 0, 0.045, 0], 1)
