@@ -83,7 +83,7 @@ def split(words: Iterable[str]) -> tuple[list[Pool], list[str]]:
     around = [(ROOT / path).resolve() for path in computing]
     waiting += [w for w in WAITING if any((ROOT / w).is_relative_to(path) for path in around)]
     pools = [
-        Pool("computing", computing, 2, [f"--ignore={folder}" for folder in WAITING], nice=5),
+        Pool("computing", computing, 3, [f"--ignore={folder}" for folder in WAITING], nice=5),
         Pool("waiting", waiting, 4, ["-o", "cache_dir=.pytest_cache/waiting"]),
     ]
     return [pool for pool in pools if pool.paths], options

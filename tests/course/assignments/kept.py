@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import pickle
 from collections.abc import Callable, Iterable, Sequence
@@ -18,6 +19,8 @@ from photograd_course.grading.check import Check
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
+
+from support.tree import ROOT
 
 T = TypeVar("T")
 Verdict = tuple[list[Outcome], list[Outcome]]
@@ -63,6 +66,17 @@ def decides_figure(folder: Path, figure: str, text: str) -> list[str]:
     data, drawing = (folder / "data").glob("*.*"), Path(viz.__file__).parent.glob("*.py")
     files = [hashlib.sha256(path.read_bytes()).hexdigest() for path in (*beside, *data, *drawing)]
     return [figure, text, version("matplotlib"), *sorted(files)]
+
+
+@functools.cache
+def course_digest() -> str:
+    """What the rules that read may look at: all assignments, and the package that students get."""
+    digest = hashlib.sha256()
+    for place in (ROOT / "assignments", ROOT / "python" / "photograd_course" / "src"):
+        for path in sorted(each for each in place.rglob("*") if each.is_file()):
+            if "__pycache__" not in path.parts:
+                digest.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 def _not_ours(verdict: Verdict) -> bool:

@@ -33,7 +33,7 @@ from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.viz.handout import Facts
 from photograd_course.viz.style import HANDOUT_DPI
 
-from course.assignments.kept import decides_figure, kept, verdict_on
+from course.assignments.kept import course_digest, decides_figure, kept, verdict_on
 from course.assignments.pictures import difference, pixels
 from support.tree import ROOT
 
@@ -187,7 +187,10 @@ class AssignmentTests:
         return bundle_of(self.folder)
 
     def test_the_rules_that_read_find_nothing(self) -> None:
-        assert [str(each) for each in reading_findings(build_of(self.folder))] == []
+        def find() -> list[str]:
+            return [str(each) for each in reading_findings(build_of(self.folder))]
+
+        assert kept(self.folder, ["rules", course_digest()], find) == []
 
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle
