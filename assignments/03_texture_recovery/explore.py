@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import texture_recovery as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 from PIL import Image
 
 size = int(option("size", 96))
@@ -126,13 +126,10 @@ if slow.any() and rows * columns > 1:
 # ## The C++ core on the same samples
 
 # %%
-try:
-    core = importlib.import_module("photograd.textures")
+core = by_the_core(lambda: importlib.import_module("photograd.textures"))
+if core is not None:
     before = time.perf_counter()
     result = core.recover(places, measured, truth.shape[:2], steps=steps)
-except (ImportError, AttributeError):  # none, or one from before it had textures
-    print("core not installed")
-else:
     core_seconds = time.perf_counter() - before
     core_error = np.mean((result.texture - truth)[~unknown] ** 2)
     print(

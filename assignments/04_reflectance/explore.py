@@ -13,7 +13,7 @@ import importlib
 import numpy as np
 import reflectance as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 pixels, steps = option("pixels", 64), option("steps", 60)
 rough, metal_share = option("roughness", 0.35), option("metalness", 0.0)
@@ -95,11 +95,8 @@ for r in (0.5, 0.75, 1.0):
     print(
         f"GGX with F = 1, roughness {r:g}: albedo {np.round(mirrors[:, 0], 4)} at cosines {views}"
     )
-try:
-    core = importlib.import_module("photograd.bsdf").registry()["gltf"]
-except ImportError:
-    print("core not installed")
-else:
+core = by_the_core(lambda: importlib.import_module("photograd.bsdf").registry()["gltf"])
+if core is not None:
 
     def core_gltf(wo, wi, base_color, metalness, roughness):
         given = {"base_color": base_color, "metalness": metalness, "roughness": roughness}

@@ -13,7 +13,7 @@ import time
 import numpy as np
 import rays as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 triangles, size = option("triangles", 256), option("size", 64)
 eta, count = option("eta", 1.5), option("rays", 2000)
@@ -125,13 +125,10 @@ print(f"sphere tracing: your derivative is {worst:.1e} from finite differences o
 
 # %%
 rng = np.random.default_rng(7)
-try:
-    meshes = importlib.import_module("photograd.geometry.mesh")
+meshes = by_the_core(lambda: importlib.import_module("photograd.geometry.mesh"))
+if meshes is not None:
     faces = np.arange(3 * len(corners)).reshape(-1, 3)
     tree = meshes.Bvh(meshes.Mesh(corners.reshape(-1, 3).astype(np.float32), faces))
-except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
-    print("core not installed")
-else:
     start = rng.normal(size=(count, 3)) * 2.5
     to = rng.normal(size=(count, 3)) * [1.5, 0.4, 1.5] - start
     hits = tree.trace(start, to)

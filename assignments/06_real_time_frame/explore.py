@@ -17,7 +17,7 @@ import time
 import numpy as np
 import real_time_frame as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 width, angle, elevation = option("width", 192), option("angle", 0.0), option("sun", 31.3)
 texels, size, samples = option("bias", 2.2), option("size", 512), option("samples", 16)
@@ -70,12 +70,9 @@ print(f"shadows: {100 * wrong:.1f} % of pixels that face the sun differ by more 
 # ## The core's rasterizer and tone curve
 
 # %%
-try:
-    raster = importlib.import_module("photograd.raster")
+raster = by_the_core(lambda: importlib.import_module("photograd.raster"))
+if raster is not None:
     core = importlib.import_module("photograd.frame")
-except ImportError:
-    print("core not installed")
-else:
     corners = mine.joined(mine.meshes(10))[0].reshape(-1, 3)
     flat = mine.project(corners, mine.ZOOM * width, mine.POSE, height, width)
     flat[:, :2] = np.round(256 * flat[:, :2]) / 256

@@ -13,7 +13,7 @@ import time
 import numpy as np
 import plenoxels as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 teapot = importlib.import_module("data.teapot")
 views, pixels, degree = option("views", 30), option("pixels", 16), option("degree", 2)
@@ -65,11 +65,8 @@ numbers = np.random.default_rng(1).normal(size=(20_000, K, 3))
 g = np.random.default_rng(2).normal(size=(20_000, 3))
 d_numbers, d_vectors = mine.sh_color_adjoint(numbers, vectors, g)
 core_fine = None
-try:
-    core = importlib.import_module("photograd.sh")
-except ImportError:
-    print("core not installed")
-else:
+core = by_the_core(lambda: importlib.import_module("photograd.sh"))
+if core is not None:
 
     def unit(v):
         return v / np.linalg.norm(v, axis=1, keepdims=True)

@@ -15,7 +15,7 @@ import hash_grids as mine
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from photograd_course.explore import option
+from photograd_course.explore import by_the_core, option
 
 seconds, steps = option("seconds", 8.0), option("steps", 0)
 size, log2 = option("size", 256), option("log2", 14)
@@ -121,12 +121,9 @@ print(
 # The same levels, the same table: features and both derivatives.
 
 # %%
-try:
-    HashEncoding = importlib.import_module("photograd.network").HashEncoding
-except (ImportError, AttributeError):
-    print("core not installed")
-else:
-    encoding = HashEncoding(resolutions, dimensions=2, log2_rows=log2, features=2)
+network = by_the_core(lambda: importlib.import_module("photograd.network"))
+if network is not None:
+    encoding = network.HashEncoding(resolutions, dimensions=2, log2_rows=log2, features=2)
     back = rng.normal(size=(BATCH, encoding.outputs))
     some = rng.uniform(0, 1, (BATCH, 2))
     before = time.perf_counter()
