@@ -5,8 +5,20 @@ from __future__ import annotations
 import importlib
 
 # With the modules that these, NumPy and the interpreter import only on first use.
-NUMPY = ("numpy.fft", "numpy.linalg", "numpy.ma", "numpy.polynomial", "numpy.random")
+NUMPY = (
+    "numpy.char",
+    "numpy.ctypeslib",
+    "numpy.fft",
+    "numpy.lib.recfunctions",
+    "numpy.linalg",
+    "numpy.ma",
+    "numpy.polynomial",
+    "numpy.random",
+    "numpy.rec",
+    "numpy.typing",
+)
 STANDARD = (
+    "_strptime",
     "abc",
     "array",
     "ast",
