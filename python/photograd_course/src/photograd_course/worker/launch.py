@@ -43,6 +43,11 @@ def open_worker(
     """
     policy = policy_of(home, mode, limits, slot)
     room = home.scratch()
+
+    def ended() -> None:
+        home.watchdog.forget(worker.pid)
+        remove_tree(room)
+
     try:
         worker = WorkerProcess(
             _command(home, mode),
@@ -52,12 +57,13 @@ def open_worker(
             seconds=limits.seconds,
             max_body=max_body,
             longest_log=limits.output_kb << 10,
-            on_end=lambda: remove_tree(room),
+            on_end=ended,
         )
     except (OSError, subprocess.SubprocessError) as error:
         remove_tree(room)
         raise GraderFault(f"mode {TITLES[mode]}: a worker cannot be started: {error}") from error
     try:
+        home.watchdog.watch(worker.pid)
         _wait_until_ready(worker, mode, policy, min(START_SECONDS, limits.seconds))
     except BaseException:
         worker.kill()
