@@ -20,6 +20,7 @@ from ..submissions.report import Report
 from ..submissions.report_gradescope import ResultsFile, best_earlier
 from ..submissions.submission import Submission
 from ..submissions.workers import Workers, isolated_workers
+from ..worker.debuggers import close_to_debuggers
 
 STUDENT = "submission"  # whose it is, Gradescope knows
 
@@ -69,4 +70,5 @@ def _options(words: Sequence[str] | None) -> argparse.Namespace:
 
 
 if __name__ == "__main__":
+    close_to_debuggers()
     sys.exit(main())
