@@ -70,7 +70,7 @@ def read(path: str) -> str:
 
 
 def find(path: str) -> str:
-    """Size and time of a file or folder, in whatever way."""
+    """Size and time of what lies at `path`, in whatever way."""
     ways = (os.stat, os.lstat, os.readlink, os.statvfs, os.chdir)
     for way in ways:
         try:

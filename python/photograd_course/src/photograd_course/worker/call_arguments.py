@@ -55,7 +55,7 @@ class Word:
 
 
 def rules(arch: int) -> dict[str, tuple[Word, ...]]:
-    """What each call may be given on an architecture: all of its words must fit."""
+    """What each call may be given where AUDIT_ARCH_ is `arch`: all of its words must fit."""
     import termios
 
     requests = [getattr(termios, name) for name in REQUESTS if hasattr(termios, name)]

@@ -33,7 +33,12 @@ def compiled_filter() -> bytes:
 
 
 def filter_for(library: Any, arch: int | None = None) -> bytes:
-    """The program for one of libseccomp's architectures, by default that of this machine."""
+    """The program for one architecture, by default that of this machine.
+
+    Args:
+        library: the module pyseccomp.
+        arch: one of its architectures.
+    """
     native = library.system_arch()
     target = native if arch is None else arch
     table = library.SyscallFilter(library.ERRNO(errno.ENOSYS))

@@ -45,7 +45,7 @@ class Watchdog:
         self._watched: dict[int, str] = {}
 
     def watch(self, pid: int) -> None:
-        """End the group of a process, should this one end before `forget`.
+        """End the group of process `pid`, should this process end before `forget`.
 
         Raises:
             GraderFault: there is no room for a further process.
@@ -60,7 +60,7 @@ class Watchdog:
             self._tell("+", pid)
 
     def forget(self, pid: int) -> None:
-        """A process has ended."""
+        """Process `pid` has ended."""
         with self._lock:
             if pid in self._watched:
                 self._tell("-", pid)
