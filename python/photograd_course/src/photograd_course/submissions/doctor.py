@@ -68,7 +68,7 @@ def examine(
 
 def _works(mode: str) -> str:
     """That it does, and which of its layers are weaker here than they might be."""
-    weaker = note(mode)
+    weaker = note(mode) if mode != "E" else ""  # E has no layers
     return f"works; {weaker}" if weaker else "works"
 
 

@@ -2,9 +2,9 @@
 
 Reviewed up to number `REVIEWED` (from 403 on, a number means the same call on every processor).
 A call that stands in no table is refused as unknown, like one that the kernel does not have yet:
-a new kernel brings nothing in. To raise the number, read what the new calls do, write each into
-a table below, and set `REVIEWED` to the last; `tests/course/isolation/test_system_calls.py`
-compares the tables with the kernel's headers and with libseccomp.
+a new kernel brings nothing in. To raise the number, read what the new calls do, write each into a
+table below, and set `REVIEWED` to the last. A test compares the tables with the kernel's headers
+and with libseccomp.
 """
 
 from __future__ import annotations
