@@ -20,6 +20,7 @@ from ..printable import markdown
 from .answers import Answered
 from .disclosure import STAFF_TEXT, for_student
 from .report import Report
+from .said_once import said_once
 
 VISIBILITY = {"public": "visible", "hidden": "after_published", "secret": "hidden"}
 
@@ -52,7 +53,7 @@ class ResultsFile:
 
     def _write_partial(self) -> None:
         tests = [_waiting(check) for check in self._bundle.checks if check.id not in self._done]
-        tests = [_test(outcome) for outcome in self._done.values()] + tests
+        tests = [_test(for_student(outcome)) for outcome in self._done.values()] + tests
         proven = sum(outcome.points for outcome in self._done.values())
         text = "Grading is still going on, or was cut off; what follows has been proven so far."
         self._write(_frame(max(proven, self._earlier or 0.0), text, tests, 0.0))
@@ -63,9 +64,10 @@ class ResultsFile:
 
 def as_results(report: Report, earlier: float | None = None) -> dict[str, Any]:
     """The whole `results.json` of a report."""
-    tests = [_test(outcome) for outcome in report.checks]
+    once = said_once(report.checks, report.remarks, for_student)
+    tests = [_test(shown) for shown in once.checks]
     tests += [_question(question) for question in report.questions]
-    lines = [markdown(remark) for remark in report.remarks]
+    lines = [markdown(remark) for remark in (*report.remarks, *once.faults)]
     score = report.proven
     if not report.is_sound:
         score = max(score, earlier or 0.0)
@@ -107,20 +109,19 @@ def _frame(
     }
 
 
-def _test(outcome: Outcome) -> dict[str, Any]:
-    shown = for_student(outcome)
+def _test(shown: Outcome) -> dict[str, Any]:
     lines = [markdown(shown.text)] if shown.text else []
     if said := shown.details.get("exception"):
         lines.append(markdown(said))
     if shown.hint:
         lines.append(f"Hint: {markdown(shown.hint)}")
     return {
-        "name": f"{outcome.id} {outcome.title}",
-        "score": outcome.points,
-        "max_score": outcome.max,
-        "status": "passed" if outcome.status is Status.PASSED else "failed",
+        "name": f"{shown.id} {shown.title}",
+        "score": shown.points,
+        "max_score": shown.max,
+        "status": "passed" if shown.status is Status.PASSED else "failed",
         "output": "\n\n".join(lines),
-        "visibility": VISIBILITY[outcome.visibility],
+        "visibility": VISIBILITY[shown.visibility],
     }
 
 
