@@ -11,6 +11,7 @@ from rich.text import Text
 from ..cli.output import note
 from ..printable import printable
 from .exports import Ignored
+from .gradebook import Filled, Gradebook
 from .grades_csv import Change, counted
 from .report import Report
 from .run_folder import RunFolder
@@ -25,6 +26,25 @@ def say_ignored(ignored: Sequence[Ignored]) -> None:
         note(f"warning: {printable(each.name)} is not graded: {each.reason}", style="yellow")
     if len(named) > MOST_LINES:
         note(f"warning: {len(named) - MOST_LINES} more entries are not graded: see ignored.csv")
+
+
+def say_gradebook(
+    book: Gradebook, filled: Filled, max_score: float, folder: RunFolder, console: Console
+) -> None:
+    """Where the filled gradebook is, and whose score stands nowhere in it."""
+    column = printable(book.header[book.column])
+    where = folder.path / "gradebook.csv"
+    console.print(f'{filled.count} grades in column "{column}": {where}', soft_wrap=True)
+    if book.max_score not in (None, max_score):
+        note(
+            f"warning: the gradebook counts {book.max_score:g} points for this column, the "
+            f"assignment {max_score:g}: points were written as they are",
+            style="yellow",
+        )
+    for student, why in filled.unmatched[:MOST_LINES]:
+        note(f"warning: not in the gradebook: {printable(student)}: {printable(why)}")
+    if len(filled.unmatched) > MOST_LINES:
+        note(f"warning: {len(filled.unmatched) - MOST_LINES} more: see unmatched.csv")
 
 
 def print_summary(
@@ -72,12 +92,13 @@ def _print_staff(reports: Sequence[Report], console: Console, said: str) -> None
 
 def _print_changes(changed: Sequence[Change], folder: RunFolder, console: Console) -> None:
     """Whose grade differs from the run before, a line each; the checks stand in changes.csv."""
-    title = f"{len(changed)} grades differ from the run before"
+    said = f"{len(changed)} grades differ from the run before"
+    console.print(f"{said}: {folder.path / 'changes.csv'}" if changed else said, soft_wrap=True)
     if not changed:
-        console.print(title)
         return
-    table = Table(title=f"{title}: {folder.path / 'changes.csv'}", title_justify="left")
-    for column in ("student", "before", "after", "by"):
+    table = Table()
+    table.add_column("student", overflow="fold")
+    for column in ("before", "after", "by"):
         table.add_column(column, no_wrap=True)
     for change in changed[:MOST_LINES]:
         numbers = ["none" if s is None else f"{s:g}" for s in (change.before, change.after)]

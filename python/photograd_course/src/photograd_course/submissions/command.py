@@ -17,15 +17,17 @@ from ..cli.progress import Progress
 from ..grading.failures import GraderFault
 from ..printable import printable
 from .batch import Batch, run_batch
-from .batch_text import print_summary, say_ignored
+from .batch_text import print_summary, say_gradebook, say_ignored
 from .exports import Export, read_export
-from .grades_csv import Change, counted
+from .gradebook import Filled, Gradebook, Score, read_gradebook
+from .grades_csv import Change, counted, csv_table
 from .load import Loaded, load
 from .one import Case, grade_one
 from .report import Report
 from .report_json import canonical
 from .report_text import print_report
 from .run_folder import RunFolder
+from .source import Person, Source
 from .workers import Workers, isolated_workers
 
 
@@ -43,6 +45,8 @@ class Request:
     mode: str | None = None
     as_json: bool = False
     closed: bool = False
+    gradebook: Path | None = None
+    gradebook_column: str | None = None
 
 
 def grade_command(request: Request) -> bool:
@@ -56,13 +60,16 @@ def grade_command(request: Request) -> bool:
         loaded = closed_for_good(loaded)
     bundle = loaded.read()
     export = read_export(bundle.manifest, request.submission)
+    book = None
+    if request.gradebook is not None:
+        book = read_gradebook(request.gradebook, bundle.manifest, request.gradebook_column)
     sources = export.sources
     places = (loaded.place, request.secret_file, request.submission, request.out)
     secrets = tuple(path.resolve() for path in places if path is not None and path.exists())
     console = Console(stderr=request.as_json, highlight=False)
     say_ignored(export.ignored)
     with _workers(bundle.manifest, request, secrets) as (workers, unavailable):
-        if request.out is None and not export.is_batch:
+        if request.out is None and book is None and not export.is_batch:
             source = sources[0]
             submission = source.take(bundle.manifest)
             case = Case(source.student, submission, bundle, loaded.digest)
@@ -85,7 +92,13 @@ def grade_command(request: Request) -> bool:
                 on_report=lambda done, _report: bar.update(done),
             )
     print_summary(reports, changed, folder, console, unavailable)
-    _say_json(request, _batch_json(reports, changed, folder, export))
+    result = _batch_json(reports, changed, folder, export)
+    if book is not None:
+        filled = fill_gradebook(book, reports, export.sources, folder)
+        say_gradebook(book, filled, reports[0].max_score, folder, console)
+        unmatched = [{"student": who, "reason": why} for who, why in filled.unmatched]
+        result["gradebook"] = {"rows": filled.count, "unmatched": unmatched}
+    _say_json(request, result)
     return all(report.is_sound for report in reports)
 
 
@@ -107,6 +120,21 @@ def _workers(
             yield None, fault.text
         else:
             yield workers, ""
+
+
+def fill_gradebook(
+    book: Gradebook, reports: Sequence[Report], sources: Sequence[Source], folder: RunFolder
+) -> Filled:
+    """Write the gradebook with the scores that count, and whose found no place in it."""
+    earlier = folder.earlier()
+    people = {source.student: source.people or (Person(source.name),) for source in sources}
+    filled = book.fill(
+        Score(each.student, people[each.student], counted(each, earlier.get(each.student))[0])
+        for each in reports
+    )
+    folder.write("gradebook.csv", filled.data)
+    folder.write("unmatched.csv", csv_table([["student", "reason"], *filled.unmatched]))
+    return filled
 
 
 def _batch_json(

@@ -22,8 +22,9 @@ def register(course: typer.Typer) -> None:
         submission: Annotated[
             Path,
             typer.Argument(
-                help="A zip, a folder or the graded file; a folder of submissions (as Gradescope, "
-                "Canvas or Moodle export them); a CSV table with columns student and path."
+                help="An archive, a folder or the graded file; a folder or zip of submissions (as "
+                "Gradescope, Canvas, Moodle, Blackboard, Brightspace or Classroom export them); a "
+                "CSV table with columns student and path, and id, email and late if you like."
             ),
         ],
         bundle: Annotated[
@@ -46,6 +47,17 @@ def register(course: typer.Typer) -> None:
             bool,
             typer.Option("--closed", help="After the due date: reports explain every question."),
         ] = False,
+        gradebook: Annotated[
+            Path | None,
+            typer.Option(
+                help="Gradebook or grading worksheet (CSV) that Canvas, Moodle, Blackboard or "
+                "Brightspace exported: filled with the scores, it is gradebook.csv in --out."
+            ),
+        ] = None,
+        gradebook_column: Annotated[
+            str | None,
+            typer.Option(help="Its column for the scores; by default that with the title."),
+        ] = None,
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
@@ -53,13 +65,24 @@ def register(course: typer.Typer) -> None:
 
         A folder or table gives grades.csv, a page and a sealed record for each submission, pairs
         that resemble each other, and, where --out holds an earlier run, who changes and by which
-        check.
+        check. What is no submission stands in ignored.csv, with the reason.
         Exit code 3 when the grader itself failed for someone: no such grade counts as a zero.
         """
         from ...submissions.command import Request, grade_command
 
         request = Request(
-            assignment, submission, bundle, secret_file, jobs, resume, out, mode, as_json, closed
+            assignment,
+            submission,
+            bundle,
+            secret_file,
+            jobs,
+            resume,
+            out,
+            mode,
+            as_json,
+            closed,
+            gradebook,
+            gradebook_column,
         )
         if not grade_command(request):
             raise typer.Exit(3)
