@@ -82,6 +82,7 @@ def test_a_flat_folder_gives_a_row_or_a_reason_for_everything(
     for name in ("john.tar.gz", "kim.7z", "lee.rar", "mary.ipynb", "ada.docx", "bob.py.txt"):
         put(tmp_path / name, "{}")
     put(tmp_path / "LOU.PY")
+    put(tmp_path / "toy (1).py")  # as a browser names the second download
     (tmp_path / "empty").mkdir()
     (tmp_path / "linked").symlink_to(tmp_path / "empty")
     put(tmp_path / "grades.csv", "a,b\n")
@@ -98,6 +99,7 @@ def test_a_flat_folder_gives_a_row_or_a_reason_for_everything(
         "ada": "not converted",
         "bob": "rename it to toy.py",
         "LOU": "rename it to toy.py",
+        "toy (1)": "",
         "empty": "empty",
         "linked": "is a link",
     }

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from .listing import Entry
 
 LONGEST_RECEIPT = 64 << 10
-_NAME = re.compile(r"^Name:[ \t]*(\S.*?)[ \t]*\(([^()]*)\)[ \t]*$", re.MULTILINE)
+_NAME = re.compile(r"\s*Name:[ \t]*(\S.*?)[ \t]*\(([^()]*)\)[ \t]*\n")  # its first line
 _FILE = re.compile(
     r"^[ \t]*Original filename:[ \t]*(\S.*?)[ \t]*\r?\n[ \t]*Filename:[ \t]*(\S.*?)[ \t]*\r?$",
     re.MULTILINE,
@@ -41,6 +41,6 @@ def read_receipt(entry: Entry) -> Receipt:
     except Exception:  # of the disk, or a damaged archive
         data = b""
     text = data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n")
-    who = _NAME.search(text)
+    who = _NAME.match(text)
     originals = {exported: original for original, exported in _FILE.findall(text)}
     return Receipt(who[1] if who else "", originals, bool(_TYPED.search(text)))

@@ -38,17 +38,17 @@ def grouped(manifest: Manifest, path: Path, claims: Sequence[Claim]) -> list[Sou
     groups: dict[tuple[str, str], list[tuple[Entry, Label]]] = {}
     for claim in claims:
         if claim.label is None:
-            sources.append(_single(path, claim.entry))
+            sources.append(_single(manifest, path, claim.entry))
         else:
             key = (claim.label.system, key_of(claim.label.key))
             groups.setdefault(key, []).append((claim.entry, claim.label))
     return sources + [_together(manifest, path, group) for group in groups.values()]
 
 
-def _single(path: Path, entry: Entry) -> Source:
+def _single(manifest: Manifest, path: Path, entry: Entry) -> Source:
     name = unicodedata.normalize("NFC", last_of(entry.name))
     student = name if entry.kind == "folder" else stem_of(name)
-    part = Part("" if entry.kind == "folder" else last_of(entry.name), entry)
+    part = Part("" if entry.kind == "folder" else as_wanted(manifest, name), entry)
     return Source(student, path / entry.name, (part,), (Person(student),), entries=(entry.name,))
 
 

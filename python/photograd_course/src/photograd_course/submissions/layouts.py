@@ -52,55 +52,57 @@ class Label:
     file: str = ""
 
 
-_CANVAS_FILE = (
-    re.compile(
-        r"(?P<name>anon)_(?P<id>[A-Za-z0-9]{5})_(?P<late>LATE_)?(?P<order>\d+)_(?P<file>.+)"
-    ),
-    re.compile(r"(?P<name>.+?)_?(?P<id>\d+)_question_\d+_(?P<order>\d+)_(?P<file>.+)"),
-    re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<id>\d+)_(?P<order>\d+)_(?P<file>.+)"),
-    re.compile(r"(?P<name>.+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<order>\d+)_(?P<file>.+)"),
-)
-_CANVAS_TEXT = re.compile(
-    r"(?P<name>.+?)_(?P<late>LATE_)?(?P<id>\d+|(?<=anon_)[A-Za-z0-9]{5})_"
-    r"(?P<file>(?:text|link|media)(?:-\d+)?\.html?)"
-)
+LONGEST_NAME = 255  # what file systems take; a longer one would only cost time
+_TYPED = r"(?P<text>(?:text|link|media)(?:-\d+)?\.html?)"
+_REST = rf"(?:(?P<order>\d+)_(?P<file>.+)|{_TYPED})"
+_CANVAS = re.compile(rf"(?P<name>.+?)_(?P<late>LATE_)?(?P<id>\d+)_{_REST}")
+_CANVAS_ANONYMOUS = re.compile(rf"(?P<name>anon)_(?P<id>[A-Za-z0-9]{{5}})_(?P<late>LATE_)?{_REST}")
+_CANVAS_QUIZ = re.compile(r"(?P<name>.+?)_?(?P<id>\d+)_question")
 _MOODLE = re.compile(
     r"(?P<name>.+?)_(?P<id>\d+)_assign(?P<kind>submission|feedback)_(?P<plugin>[a-z]+)"
     r"(?:_(?P<file>.*)|(?P<suffix>\.\w+))?"
 )
 _BLACKBOARD = re.compile(
-    r"(?P<task>.+)_(?P<user>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)"
+    r"(?P<task>.+?)_(?P<user>[^_]+)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)"
 )
 _BRIGHTSPACE = re.compile(r"(?P<user>\d+)-(?P<folder>\d+) - (?P<rest>.+)")
 _CLASSROOM = re.compile(r"(?P<name>.+?) - (?P<file>[^/]+)")
 _CONVERTED = re.compile(r"\.(?:docx?|gdoc|odt|rtf|pdf|txt|html?)$", re.IGNORECASE)
 
 
+Told = tuple[int, Label]  # where the name has said whose the entry is, and what it says
+
+
 def read_name(manifest: Manifest, name: str) -> Label | None:
-    """What the name of an entry says; None where it has no layout of a learning system."""
+    """What the name of an entry says; None where it has no layout of a learning system.
+
+    Students choose the end of a name, and could write there what another system puts in front. So
+    the layout counts that says first whose the entry is.
+    """
     name = unicodedata.normalize("NFC", name)
-    for read in (_moodle, _blackboard, _brightspace, _canvas, _classroom):
-        if label := read(manifest, name):
-            return label
-    return None
+    if len(name) > LONGEST_NAME:
+        return None
+    found = [told for read in (_moodle, _blackboard, _brightspace, _canvas) if (told := read(name))]
+    if found:
+        return min(found, key=lambda told: told[0])[1]
+    return _classroom(manifest, name)
 
 
-def _moodle(_manifest: Manifest, name: str) -> Label | None:
+def _moodle(name: str) -> Told | None:
     if not (found := _MOODLE.fullmatch(name)):
         return None
     is_work = (found["kind"], found["plugin"]) == ("submission", "file")
     is_text = (found["kind"], found["plugin"]) == ("submission", "onlinetext")
     role = WORK if is_work else TEXT if is_text else COMPANION
     file = found["file"] or (f"{found['plugin']}{found['suffix']}" if found["suffix"] else "")
-    return Label(
-        "Moodle", role, found["name"], found["id"], f"{found['id']} {found['name']}", file=file
-    )
+    key = f"{found['id']} {found['name']}"
+    return found.end("id"), Label("Moodle", role, found["name"], found["id"], key, file=file)
 
 
-def _blackboard(_manifest: Manifest, name: str) -> Label | None:
+def _blackboard(name: str) -> Told | None:
     if not (found := _BLACKBOARD.fullmatch(name)):
         return None
-    return Label(
+    label = Label(
         "Blackboard",
         WORK if found["file"] else RECEIPT,
         found["user"],
@@ -110,11 +112,12 @@ def _blackboard(_manifest: Manifest, name: str) -> Label | None:
         when=found["when"],
         file=found["file"] or name,
     )
+    return found.end("user"), label
 
 
-def _brightspace(_manifest: Manifest, name: str) -> Label | None:
+def _brightspace(name: str) -> Told | None:
     if name.lower() == "index.html":
-        return Label("Brightspace", COMPANION, "")
+        return 0, Label("Brightspace", COMPANION, "")
     if not (found := _BRIGHTSPACE.fullmatch(name)):
         return None
     parts = found["rest"].split(" - ")
@@ -124,7 +127,7 @@ def _brightspace(_manifest: Manifest, name: str) -> Label | None:
     number = next((part for part in who[:-1] if re.search(r"\d", part)), found["user"])
     moment = "" if at is None else parts[at]
     student = who[-1] if who else found["user"]
-    return Label(
+    label = Label(
         "Brightspace",
         WORK,
         student,
@@ -134,25 +137,27 @@ def _brightspace(_manifest: Manifest, name: str) -> Label | None:
         when=moment_of(moment),
         file=file,
     )
+    return found.end("folder"), label
 
 
-def _canvas(manifest: Manifest, name: str) -> Label | None:
-    if found := _CANVAS_TEXT.fullmatch(name):
-        return _canvas_label(found, TEXT, "")
-    matches = [found for pattern in _CANVAS_FILE if (found := pattern.fullmatch(name))]
-    if not matches:
+def _canvas(name: str) -> Told | None:
+    found = _CANVAS_ANONYMOUS.fullmatch(name) or _CANVAS.fullmatch(name)
+    if found is None:
         return None
-    wanted = wanted_names(manifest)
-    best = next((m for m in matches if as_wanted(manifest, m["file"]) in wanted), matches[0])
-    return _canvas_label(best, WORK, best["order"].zfill(24))
-
-
-def _canvas_label(found: re.Match[str], role: str, order: str) -> Label:
-    key = f"{found['id']} {found['name']}"
-    late = bool(found.groupdict().get("late"))
-    return Label(
-        "Canvas", role, found["name"], found["id"], key, late, when=order, file=found["file"]
+    order = found["order"]
+    who = _CANVAS_QUIZ.fullmatch(found["name"]) if order else None
+    student, number = (who or found)["name"], (who or found)["id"]
+    label = Label(
+        "Canvas",
+        WORK if order else TEXT,
+        student,
+        number,
+        f"{number} {student}",
+        is_late=bool(found["late"]),
+        when=(order or "").zfill(LONGEST_NAME),
+        file=found["file"] or found["text"],
     )
+    return found.end("id"), label
 
 
 def _classroom(manifest: Manifest, name: str) -> Label | None:
