@@ -20,7 +20,11 @@ MOST_LINES = 20  # of one kind on the terminal
 
 
 def say_ignored(ignored: Sequence[Ignored]) -> None:
-    """What is no submission, on stderr; what operating systems add stands in the table alone."""
+    """What is no submission, on stderr; what operating systems add stands in the table alone.
+
+    Args:
+        ignored: entries that are none, those of operating systems among them.
+    """
     named = [each for each in ignored if not each.is_noise]
     for each in named[:MOST_LINES]:
         note(f"warning: {printable(each.name)} is not graded: {each.reason}", style="yellow")
@@ -31,7 +35,15 @@ def say_ignored(ignored: Sequence[Ignored]) -> None:
 def say_gradebook(
     book: Gradebook, filled: Filled, max_score: float, folder: RunFolder, console: Console
 ) -> None:
-    """Where the filled gradebook is, and whose score stands nowhere in it."""
+    """Where the filled gradebook is, and whose score stands nowhere in it.
+
+    Args:
+        book: the gradebook, and its column.
+        filled: what became of it.
+        max_score: what the assignment is worth.
+        folder: where it was written.
+        console: where to.
+    """
     column = printable(book.header[book.column])
     where = folder.path / "gradebook.csv"
     console.print(f'{filled.count} grades in column "{column}": {where}', soft_wrap=True)

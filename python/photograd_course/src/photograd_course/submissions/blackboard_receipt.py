@@ -35,7 +35,11 @@ class Receipt:
 
 
 def read_receipt(entry: Entry) -> Receipt:
-    """Read it; what cannot be read says nothing."""
+    """What a receipt says; one that cannot be read says nothing.
+
+    Args:
+        entry: the text file.
+    """
     try:
         data = entry.read(LONGEST_RECEIPT) if entry.kind == "file" else b""
     except Exception:  # of the disk, or a damaged archive

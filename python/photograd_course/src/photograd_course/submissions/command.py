@@ -125,7 +125,14 @@ def _workers(
 def fill_gradebook(
     book: Gradebook, reports: Sequence[Report], sources: Sequence[Source], folder: RunFolder
 ) -> Filled:
-    """Write the gradebook with the scores that count, and whose found no place in it."""
+    """Write the gradebook with the scores that count, and whose found no place in it.
+
+    Args:
+        book: the gradebook that was exported.
+        reports: of all submissions.
+        sources: the submissions, which know whose they are.
+        folder: for gradebook.csv and unmatched.csv.
+    """
     earlier = folder.earlier()
     people = {source.student: source.people or (Person(source.name),) for source in sources}
     filled = book.fill(

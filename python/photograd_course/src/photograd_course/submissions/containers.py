@@ -26,12 +26,12 @@ _READ_ONLY = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOC
 
 
 def is_archive(name: str) -> bool:
-    """Whether a file of this name is an archive that can be read here."""
+    """Whether a file of this `name` is an archive that can be read here."""
     return name.lower().endswith((".zip", *TARS))
 
 
 def is_unread_archive(name: str) -> bool:
-    """Whether it is an archive, but of no kind that can be read here."""
+    """Whether a file of this `name` is an archive, but of no kind that can be read here."""
     return name.lower().endswith(UNREAD) and not is_archive(name)
 
 
@@ -74,6 +74,9 @@ def walk_folder(folder: Path) -> list[Entry]:
 def open_archive(entry: Entry) -> list[Entry]:
     """The entries of a zip or tar archive.
 
+    Args:
+        entry: the archive, whose name says its kind.
+
     Raises:
         Refused: it is too large or cannot be read; the text says so.
     """
@@ -87,7 +90,8 @@ def open_archive(entry: Entry) -> list[Entry]:
         try:
             found = members(data, MOST_ENTRIES + 1)
         except TarError as error:
-            raise Refused(f"{entry.name} is no readable tar archive: {error}") from error
+            said = f"{entry.name} is no readable tar archive ({error}): hand in a zip"
+            raise Refused(said) from error
         return [_tar_entry(each) for each in found if each.name not in (".", "")]
     try:
         return zip_entries(zipfile.ZipFile(io.BytesIO(data)))
@@ -104,6 +108,9 @@ def first_level(entries: Sequence[Entry]) -> list[Entry]:
     """Entries of an archive put into their first folders, as `list_folder` gives a disk's.
 
     One whose name leads elsewhere gets the kind "misplaced".
+
+    Args:
+        entries: all of the archive.
     """
     folders: dict[str, list[Entry]] = {}
     files: list[Entry] = []
@@ -122,7 +129,7 @@ def first_level(entries: Sequence[Entry]) -> list[Entry]:
 
 
 def folder_entry(name: str, inside: Sequence[Entry]) -> Entry:
-    """A folder of an archive."""
+    """A folder of an archive, by its `name` and what is `inside`."""
     return Entry(name, "folder", 0, lambda _limit: b"", lambda: list(inside))
 
 

@@ -53,12 +53,17 @@ class Export:
 
 
 def find_sources(manifest: Manifest, path: Path) -> list[Source]:
-    """All submissions at ``path``, sorted by student; see `read_export`."""
+    """All submissions at ``path``, sorted by student; ``manifest`` as of `read_export`."""
     return list(read_export(manifest, path).sources)
 
 
 def is_batch(manifest: Manifest, path: Path) -> bool:
-    """Whether ``path`` is a table, folder or archive of submissions rather than one of them."""
+    """Whether ``path`` is a table, folder or archive of submissions rather than one of them.
+
+    Args:
+        manifest: of the assignment.
+        path: as of `read_export`.
+    """
     return read_export(manifest, path).is_batch
 
 

@@ -39,7 +39,7 @@ _IDENTITY = {*_IDS, *_EMAILS, *_NAMES, *_FIRST, *_LAST, *_OTHER}
 
 @dataclass(frozen=True)
 class Score:
-    """What a submission is worth to those who handed it in; None where nobody knows yet."""
+    """What a submission is worth to its students; None where nobody knows yet."""
 
     student: str
     people: tuple[Person, ...]
@@ -79,7 +79,11 @@ class Gradebook:
         return known.pop() if len(known) == 1 else None
 
     def fill(self, scores: Iterable[Score]) -> Filled:
-        """Write each score into the row of everyone whose it is."""
+        """The gradebook with scores.
+
+        Args:
+            scores: of all submissions; each goes into the row of everyone whose it is.
+        """
         scores = list(scores)
         finder = _Finder(self, [person for score in scores for person in score.people])
         found: dict[int, list[tuple[str, float]]] = {}

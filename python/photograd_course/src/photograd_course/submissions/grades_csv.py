@@ -92,6 +92,10 @@ def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
 
     Where we failed, a check or question keeps the points that the same submission had for it
     before; all others count as they are now. Another submission's points stand for nothing.
+
+    Args:
+        report: of this run.
+        earlier: of the run before, on the same student.
     """
     if report.is_sound:
         return report.score, "submission refused" if report.problem else "ok"
@@ -105,7 +109,12 @@ def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
 
 
 def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Change]:
-    """Who changes, and by which check; also who is new or gone."""
+    """Who changes, and by which check; also who is new or gone.
+
+    Args:
+        reports: of this run.
+        earlier: of the run before, by student.
+    """
     found = []
     now = {report.student: report for report in reports}
     for student in sorted({*now, *earlier}):
@@ -119,7 +128,7 @@ def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Ch
 
 
 def changes_table(found: Sequence[Change]) -> bytes:
-    """The differences as a table."""
+    """The differences that were `found`, as a table."""
     rows: list[list[Any]] = [["student", "before", "after", "checks"]]
     for change in found:
         scores = ["" if s is None else s for s in (change.before, change.after)]
@@ -128,7 +137,7 @@ def changes_table(found: Sequence[Change]) -> bytes:
 
 
 def ignored_table(ignored: Sequence[Ignored]) -> bytes:
-    """The entries that are no submissions, and why."""
+    """The `ignored` entries, which are no submissions, and why."""
     rows: list[list[Any]] = [["entry", "reason"]]
     return csv_table([*rows, *([each.name, each.reason] for each in ignored)])
 
@@ -156,7 +165,7 @@ def _verdicts(report: Report) -> dict[str, str]:
 
 
 def csv_table(rows: Sequence[Sequence[Any]]) -> bytes:
-    """A table as bytes, in which no cell is a formula."""
+    """A table of these `rows` as bytes, in which no cell is a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_MINIMAL)
     writer.writerows([csv_cell(cell) for cell in row] for row in rows)

@@ -32,6 +32,9 @@ class Submitted:
 def read_metadata(entry: Entry | None) -> dict[str, Submitted]:
     """Folder to submitters; empty without the file.
 
+    Args:
+        entry: the file.
+
     Raises:
         IoError: the file is too large, or no YAML.
     """

@@ -22,6 +22,7 @@ def take(manifest: Manifest, path: Path) -> Submission:
     """Whatever lies at ``path``: an archive, a folder or the graded module itself.
 
     Never raises for what a submission holds: the result's `problem` says what is wrong with it.
+    The ``manifest`` names the files that are taken.
     """
     try:
         entry = file_entry(path.name, path)
@@ -93,7 +94,7 @@ def _joined(
 def as_wanted(manifest: Manifest, name: str) -> str:
     """The name that a file had before a learning system or a browser put "-1" or " (1)" behind it.
 
-    Only where that makes it a name of the assignment's.
+    Only where that makes it a name of the assignment's, which its ``manifest`` lists.
     """
     plain = _COPY.sub("", name)
     return plain if plain in wanted_names(manifest) else name

@@ -78,6 +78,10 @@ def read_name(manifest: Manifest, name: str) -> Label | None:
 
     Students choose the end of a name, and could write there what another system puts in front. So
     the layout counts that says first whose the entry is.
+
+    Args:
+        manifest: of the assignment; Classroom's names are known by its files alone.
+        name: of the entry, without folders.
     """
     name = unicodedata.normalize("NFC", name)
     if len(name) > LONGEST_NAME:

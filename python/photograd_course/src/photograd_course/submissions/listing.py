@@ -39,6 +39,10 @@ def choose(manifest: Manifest, entries: Sequence[Entry]) -> Submission:
     """Take the files on the assignment's list, from the top or from a folder around everything.
 
     Never raises for what a submission holds; the result's `problem` says what is wrong.
+
+    Args:
+        manifest: of the assignment.
+        entries: all names of the submission.
     """
     ignored: list[str] = []
     try:

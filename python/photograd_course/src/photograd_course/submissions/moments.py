@@ -24,7 +24,11 @@ def looks_like_a_date(text: str) -> bool:
 
 
 def moment_of(text: str) -> str:
-    """The date and time such that the order of texts is theirs; "" where they cannot be read."""
+    """The date and time such that the order of texts is theirs; "" where they cannot be read.
+
+    Args:
+        text: such as "Mar 29, 2018 1205 PM".
+    """
     plain = re.sub(r"^[A-Za-z]+day, ", "", text)
     found = next((match for each in _DATES if (match := each.fullmatch(plain))), None)
     if found is None:

@@ -80,7 +80,11 @@ class Source:
         return "; ".join(each.email for each in self.people if each.email)
 
     def take(self, manifest: Manifest) -> Submission:
-        """Take it into memory; never raises for what it holds."""
+        """Take it into memory; never raises for what it holds.
+
+        Args:
+            manifest: of the assignment.
+        """
         if self.problem:
             taken = refused(self.problem)
         elif self.parts:

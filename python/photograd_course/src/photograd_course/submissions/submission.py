@@ -84,7 +84,11 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
 
 
 def missing_module(manifest: Manifest) -> str:
-    """What is said where nothing better is known about a submission without the graded module."""
+    """What is said about a submission without the graded module, where nothing better is known.
+
+    Args:
+        manifest: of the assignment.
+    """
     return f"there is no {manifest.module}.py in the submission: hand in a file of this name"
 
 

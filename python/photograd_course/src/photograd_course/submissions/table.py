@@ -14,6 +14,9 @@ _LATE = {"1", "late", "true", "x", "yes"}
 def read_table(path: Path) -> list[Source]:
     """The submissions, by student.
 
+    Args:
+        path: of the table; paths in it are relative to it.
+
     Raises:
         IoError: it cannot be read.
         SceneError: it lacks a column, or names a student twice.
