@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections import Counter
 from pathlib import Path
 
@@ -11,9 +12,11 @@ from hypothesis import strategies as st
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.submissions.containers import list_folder
 from photograd_course.submissions.exports import read_export, sort_entries
+from photograd_course.submissions.grades_csv import grades_table
 from photograd_course.submissions.listing import Entry
 
 from .test_exports import put, put_zip
+from .test_reports import report
 
 STUDENTS = st.sampled_from(
     ["doejane", "Jane Doe", "José", "Jose\u0301", "O'Neil, Pat", "anon", "a_b"]
@@ -117,3 +120,14 @@ def test_a_folder_of_what_is_no_submission_says_so(bundle: Bundle, tmp_path: Pat
     put(tmp_path / "notes.csv")
     with pytest.raises(OSError, match=r"expected submissions, got nothing but notes\.csv"):
         read_export(bundle.manifest, tmp_path)
+
+
+def test_rows_of_one_name_without_a_number_are_told_apart(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "ada.zip")
+    put(tmp_path / "ada" / "toy.py")
+    put(tmp_path / "Jo_5_assignsubmission_file_toy.py")
+    put(tmp_path / "Jo_6_assignsubmission_file_toy.py")
+    sources = read_export(bundle.manifest, tmp_path).sources
+    table = grades_table([report(student=source.student) for source in sources], {}, sources)
+    rows = [(row["student"], row["id"]) for row in csv.DictReader(table.decode().splitlines())]
+    assert rows == [("Jo", "5"), ("Jo", "6"), ("ada (ada)", ""), ("ada (ada.zip)", "")]

@@ -9,8 +9,12 @@ from pathlib import Path
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import IoError, SceneError
+from photograd_course.submissions.command import with_late_marks
+from photograd_course.submissions.exports import read_export
 from photograd_course.submissions.gradebook import Score, read_gradebook
 from photograd_course.submissions.source import Person
+
+from .test_exports import put
 
 CANVAS = (
     "Student,ID,SIS User ID,SIS Login ID,Section,HW 0 (11),A weighted sum and its derivative (12),"
@@ -106,6 +110,18 @@ def test_the_grading_worksheet_of_moodle(bundle: Bundle, tmp_path: Path) -> None
     assert (jane["Identifier"], jane["Grade"], jose["Grade"]) == ("Participant 5", "12,5", "75")
     assert jane["Maximum Grade"] == "75,00"
     assert filled.unmatched == ()
+
+
+def test_the_worksheet_of_moodle_says_who_is_late(bundle: Bundle, tmp_path: Path) -> None:
+    late = WORKSHEET.replace("Submitted for grading", "Submitted for grading - 2 hours late", 1)
+    book = read_gradebook(write(tmp_path, late), bundle.manifest)
+    put(tmp_path / "in" / "Jane Doe_5_assignsubmission_file_toy.py")
+    put(tmp_path / "in" / "José Roe_6_assignsubmission_file_toy.py")
+    export = with_late_marks(read_export(bundle.manifest, tmp_path / "in"), book)
+    assert [(each.name, each.is_late) for each in export.sources] == [
+        ("Jane Doe", True),
+        ("José Roe", False),
+    ]
 
 
 def test_the_gradebook_of_moodle(bundle: Bundle, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tarfile
 import unicodedata
 import zipfile
 from pathlib import Path
@@ -214,6 +215,7 @@ def test_a_module_beside_an_export_makes_it_no_single_submission(
 def test_copies_beside_a_single_submission_are_named(bundle: Bundle, tmp_path: Path) -> None:
     put(tmp_path / "toy.py")
     put(tmp_path / "toy (1).py")
+    put(tmp_path / "toy_test.py")
     export, _ = read(bundle, tmp_path)
     assert not export.is_batch
     assert [each.name for each in export.ignored] == ["toy (1).py"]
@@ -239,3 +241,8 @@ def test_a_zip_of_a_whole_export_is_read_as_it_is(bundle: Bundle, tmp_path: Path
         archive.writestr("ada/toy.py", "a = 1\n")
         archive.writestr("bo/90_toy/toy.py", "b = 1\n")
     assert set(read(bundle, tmp_path / "class.zip")[1]) == {"ada", "bo"}
+    with tarfile.open(tmp_path / "class.tar.gz", "w:gz") as packed:
+        for name in ("ada", "bo"):
+            put(tmp_path / name / "toy.py")
+            packed.add(tmp_path / name, name)
+    assert set(read(bundle, tmp_path / "class.tar.gz")[1]) == {"ada", "bo"}

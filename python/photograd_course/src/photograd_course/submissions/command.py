@@ -63,6 +63,7 @@ def grade_command(request: Request) -> bool:
     book = None
     if request.gradebook is not None:
         book = read_gradebook(request.gradebook, bundle.manifest, request.gradebook_column)
+        export = with_late_marks(export, book)
     sources = export.sources
     places = (loaded.place, request.secret_file, request.submission, request.out)
     secrets = tuple(path.resolve() for path in places if path is not None and path.exists())
@@ -120,6 +121,16 @@ def _workers(
             yield None, fault.text
         else:
             yield workers, ""
+
+
+def with_late_marks(export: Export, book: Gradebook) -> Export:
+    """The `export` with the late marks of a `book` as well."""
+    late = book.late(person for source in export.sources for person in source.people)
+    sources = (
+        replace(source, is_late=source.is_late or any(each in late for each in source.people))
+        for source in export.sources
+    )
+    return replace(export, sources=tuple(sources))
 
 
 def fill_gradebook(

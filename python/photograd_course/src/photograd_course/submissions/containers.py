@@ -93,15 +93,24 @@ def open_archive(entry: Entry) -> list[Entry]:
             said = f"{entry.name} is no readable tar archive ({error}): hand in a zip"
             raise Refused(said) from error
         return [_tar_entry(each) for each in found if each.name not in (".", "")]
+    return zip_entries(entry.name, io.BytesIO(data))
+
+
+def zip_entries(name: str, file: Path | io.BytesIO) -> list[Entry]:
+    """The entries of a zip archive, which are read from it when they are asked for.
+
+    Args:
+        name: of the archive, for messages.
+        file: the archive.
+
+    Raises:
+        Refused: it cannot be read.
+    """
     try:
-        return zip_entries(zipfile.ZipFile(io.BytesIO(data)))
+        archive = zipfile.ZipFile(file)
+        return [_zip_entry(archive, info) for info in archive.infolist()]
     except Exception as error:  # zipfile answers damage with a dozen types
-        raise Refused(f"{entry.name} is no readable zip archive: {type(error).__name__}") from error
-
-
-def zip_entries(archive: zipfile.ZipFile) -> list[Entry]:
-    """The entries of an open zip archive."""
-    return [_zip_entry(archive, info) for info in archive.infolist()]
+        raise Refused(f"{name} is no readable zip archive: {type(error).__name__}") from error
 
 
 def first_level(entries: Sequence[Entry]) -> list[Entry]:

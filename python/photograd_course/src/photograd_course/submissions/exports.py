@@ -6,7 +6,6 @@ that is none, which is named with the reason. None is passed over.
 
 from __future__ import annotations
 
-import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,13 +13,22 @@ from pathlib import Path
 
 from ..assignment.manifest import Manifest
 from ..errors import IoError, message
-from .containers import first_level, is_archive, is_unread_archive, list_folder, zip_entries
+from .containers import (
+    file_entry,
+    first_level,
+    is_archive,
+    is_unread_archive,
+    list_folder,
+    open_archive,
+    zip_entries,
+)
 from .gradescope_names import METADATA, Submitted, read_metadata
 from .grouping import Claim, grouped, stem_of
+from .intake import as_wanted
 from .layouts import COMPANION, Label, read_name
 from .listing import NOISE, Entry, key_of, last_of
 from .source import Person, Source
-from .submission import wanted_names
+from .submission import Refused
 from .table import read_table
 
 CODE = (".py", ".pyw", ".ipynb", ".py.txt")
@@ -86,7 +94,7 @@ def read_export(manifest: Manifest, path: Path) -> Export:
         return Export(tuple(read_table(path)))
     one = Source(path.name if path.is_dir() else stem_of(path.name), path)
     try:
-        entries = list_folder(path) if path.is_dir() else _bulk_zip(path)
+        entries = list_folder(path) if path.is_dir() else _inside(path)
     except OSError as error:
         got = error.strerror or str(error)
         raise IoError(message("grade", str(path), "a readable folder", got)) from error
@@ -197,13 +205,15 @@ def _distinct(sources: Sequence[Source]) -> list[Source]:
     return sorted(told.values(), key=lambda source: source.student)
 
 
-def _bulk_zip(path: Path) -> list[Entry] | None:
-    """The first level of a zip; None for any other file, and for one that cannot be read."""
-    if not path.name.lower().endswith(".zip") or not path.is_file():
+def _inside(path: Path) -> list[Entry] | None:
+    """The first level of an archive; None for any other file, and for one that cannot be read."""
+    if not path.is_file() or not is_archive(path.name):
         return None
     try:
-        return first_level(zip_entries(zipfile.ZipFile(path)))
-    except Exception:  # zipfile answers damage with a dozen types; its row says that it has some
+        if path.suffix.lower() == ".zip":  # of a whole class, read entry by entry from the disk
+            return first_level(zip_entries(path.name, path))
+        return first_level(open_archive(file_entry(path.name, path)))
+    except Refused:  # said in its row
         return None
 
 
@@ -262,14 +272,10 @@ def _is_several(manifest: Manifest, entries: Sequence[Entry], *, is_folder: bool
 
 
 def _beside(manifest: Manifest, entries: Sequence[Entry]) -> tuple[Ignored, ...]:
-    """What lies in one submission and may be another: copies of its module under other names."""
-    module = manifest.module
-    wanted = {key_of(name) for name in wanted_names(manifest)}
-    reason = f"lies beside {module}.py: if it is of another student, give each a folder"
+    """Copies of files beside one submission, which may be another: downloads that were numbered."""
+    reason = f"lies beside {manifest.module}.py: if it is of another student, give each a folder"
     return tuple(
         Ignored(entry.name, reason)
         for entry in entries
-        if key_of(entry.name) not in wanted
-        and entry.name.lower().endswith((".py", ".ipynb", ".zip"))
-        and key_of(entry.name).startswith(key_of(module))
+        if as_wanted(manifest, entry.name) != entry.name
     )

@@ -78,6 +78,17 @@ class Gradebook:
         known = {float(text.replace(",", ".")) for text in told if _is_number(text)}
         return known.pop() if len(known) == 1 else None
 
+    def late(self, people: Iterable[Person]) -> set[Person]:
+        """Those of the `people` whose row says so: Moodle's worksheet does, in its status."""
+        people = list(people)
+        finder = _Finder(self, people)
+        found = {person: finder.row_of(person)[0] for person in people}
+        return {
+            person
+            for person, row in found.items()
+            if row is not None and "late" in self._cell(self.rows[row], "status").lower().split()
+        }
+
     def fill(self, scores: Iterable[Score]) -> Filled:
         """The gradebook with scores.
 

@@ -47,6 +47,7 @@ def grades_table(
         sources: the submissions, where names, ids and late marks of an export are known.
     """
     known = {source.student: source for source in sources}
+    alike = Counter((source.name, source.id) for source in sources)
     head = ["student", "id", "email", "late", "assignment", "score", "max_score", "status"]
     head += ["mode", "page", "submission"]
     ids = list(reports[0].points) if reports else []
@@ -58,7 +59,7 @@ def grades_table(
         source = known.get(report.student)
         rows.append(
             [
-                *_who(report, source),
+                *_who(report, source, alike),
                 report.assignment,
                 "" if score is None else score,
                 report.max_score,
@@ -73,10 +74,11 @@ def grades_table(
     return csv_table(rows)
 
 
-def _who(report: Report, source: Source | None) -> list[str]:
+def _who(report: Report, source: Source | None, alike: Mapping[tuple[str, str], int]) -> list[str]:
     if source is None:
         return [report.student, "", "", ""]
-    return [source.name, source.id, source.email, "yes" if source.is_late else ""]
+    name = source.name if alike[source.name, source.id] == 1 else report.student
+    return [name, source.id, source.email, "yes" if source.is_late else ""]
 
 
 def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
