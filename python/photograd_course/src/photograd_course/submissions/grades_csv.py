@@ -83,7 +83,7 @@ def _who(report: Report, source: Source | None, alike: Mapping[tuple[str, str], 
 
 def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
     faults = said_once(report.checks, report.remarks).faults if report.is_sound else ()
-    notes = [*report.remarks, *faults, *(f"staff: {note}" for note in report.staff)]
+    notes = [*faults, *report.remarks, *(f"staff: {note}" for note in report.staff)]
     if declared.get(report.declared, 0) > 1:  # whose questions, and so whose answers, are these?
         notes.append(f"staff: answers.toml names {report.declared}, as another submission does")
     return notes

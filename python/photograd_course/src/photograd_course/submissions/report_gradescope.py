@@ -67,7 +67,7 @@ def as_results(report: Report, earlier: float | None = None) -> dict[str, Any]:
     once = said_once(report.checks, report.remarks, for_student)
     tests = [_test(shown) for shown in once.checks]
     tests += [_question(question) for question in report.questions]
-    lines = [markdown(remark) for remark in (*report.remarks, *once.faults)]
+    lines = [markdown(remark) for remark in (*once.faults, *report.remarks)]
     score = report.proven
     if not report.is_sound:
         score = max(score, earlier or 0.0)

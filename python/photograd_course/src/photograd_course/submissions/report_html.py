@@ -55,7 +55,7 @@ def render_page(report: Report) -> str:
     parts.append(f"<h1>{e(report.assignment)} {e(report.title)}</h1><p>{e(report.student)}</p>")
     parts.append(_score(report))
     once = said_once(report.checks, report.remarks, for_student)
-    notes = (*report.remarks, *once.faults)
+    notes = (*once.faults, *report.remarks)
     parts += [f'<p class="note">{e(note)}</p>' for note in notes]
     task = ""
     for outcome in once.checks:

@@ -7,9 +7,9 @@ from dataclasses import replace
 from rich.console import Console
 from rich.text import Text
 
-from ..grading.outcome import Outcome, Status
+from ..grading.outcome import Outcome
 from ..printable import printable
-from ..student.terminal import print_outcome
+from ..student.terminal import MARKS, print_outcome
 from .report import Report
 from .said_once import BELOW, said_once
 
@@ -25,15 +25,15 @@ def print_report(report: Report, console: Console) -> None:
     said = f" ({report.isolation})" if report.isolation else ""
     _line(console, f"isolation mode {report.mode}{said}, submission {report.submission[:12]}")
     once = said_once(report.checks, report.remarks)
-    for remark in (*report.remarks, *once.faults):
+    for remark in (*once.faults, *report.remarks):
         _line(console, f"note: {remark}", "yellow")
     for name in report.ignored:
         _line(console, f"ignored: {name}")
     for note in report.staff:
         _line(console, f"staff: {note}", "magenta")
     for outcome in once.checks:
-        if outcome.status is Status.ERROR_OURS and outcome.text == BELOW:
-            _line(console, f"! {outcome.id:<20} {outcome.title}")
+        if outcome.text == BELOW:
+            _line(console, f"{MARKS[outcome.status][0]} {outcome.id:<20} {outcome.title}")
         else:
             print_outcome(safe(outcome), console)
     for question in report.questions:
