@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from collections import Counter
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.submissions.containers import list_folder
-from photograd_course.submissions.exports import read_export, sort_entries
+from photograd_course.submissions.exports import find_sources, read_export, sort_entries
 from photograd_course.submissions.grades_csv import grades_table
 from photograd_course.submissions.listing import Entry
 
@@ -131,3 +132,22 @@ def test_rows_of_one_name_without_a_number_are_told_apart(bundle: Bundle, tmp_pa
     table = grades_table([report(student=source.student) for source in sources], {}, sources)
     rows = [(row["student"], row["id"]) for row in csv.DictReader(table.decode().splitlines())]
     assert rows == [("Jo", "5"), ("Jo", "6"), ("ada (ada)", ""), ("ada (ada.zip)", "")]
+
+
+def test_names_without_access_cost_their_own_row_alone(
+    bundle: Bundle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put(tmp_path / "ada" / "toy.py")
+    put(tmp_path / "bo" / "toy.py")
+    real = Path.lstat
+
+    def lstat(path: Path) -> os.stat_result:
+        if path.parent.name == "bo":
+            raise PermissionError(13, "Permission denied", str(path))
+        return real(path)
+
+    monkeypatch.setattr(Path, "lstat", lstat)
+    found = {s.student: s.take(bundle.manifest) for s in find_sources(bundle.manifest, tmp_path)}
+    assert set(found) == {"ada", "bo"}
+    assert not found["ada"].problem
+    assert "without access" in found["bo"].problem

@@ -53,9 +53,7 @@ def list_folder(folder: Path) -> list[Entry]:
     Raises:
         OSError: it cannot be read.
     """
-    return [
-        file_entry(name, folder / name) for name in sorted(each.name for each in folder.iterdir())
-    ]
+    return [_listed(path.name, path) for path in sorted(folder.iterdir())]
 
 
 def walk_folder(folder: Path) -> list[Entry]:
@@ -64,11 +62,19 @@ def walk_folder(folder: Path) -> list[Entry]:
     for parent, folders, files in os.walk(folder, followlinks=False):
         for name in sorted([*folders, *files]):
             path = Path(parent) / name
-            entries.append(file_entry(path.relative_to(folder).as_posix(), path))
+            entries.append(_listed(path.relative_to(folder).as_posix(), path))
         folders[:] = sorted(name for name in folders if name.lower() not in NOISE)
         if len(entries) > MOST_ENTRIES:
             break
     return entries
+
+
+def _listed(name: str, path: Path) -> Entry:
+    """A name of a folder, even where no more than the name can be seen."""
+    try:
+        return file_entry(name, path)
+    except OSError:
+        return Entry(name, "file without access", 0, _reader(path))
 
 
 def open_archive(entry: Entry) -> list[Entry]:
