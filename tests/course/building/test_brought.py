@@ -16,7 +16,6 @@ from photograd_course.errors import SceneError
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
-from photograd_course.student.starting import taken_along, with_own_modules
 
 from .support import TOY
 
@@ -118,34 +117,6 @@ def test_a_wrong_earlier_module_costs_its_own_points_alone(folder: Path) -> None
     assert first.status is Status.FAILED
     assert second.status is Status.PASSED
     assert "reference" in second.text
-
-
-def test_a_students_own_module_is_taken_along(folder: Path, tmp_path: Path) -> None:
-    manifest = read_folder(folder).manifest
-    work = tmp_path / "work"
-    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
-    assert taken == []
-    (work / "90_toy").mkdir(parents=True)
-    (work / "90_toy" / "toy.py").write_text("mine", encoding="utf-8")
-    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
-    assert files["toy.py"] == b"mine"
-    assert [path.parent.name for path in taken] == ["90_toy"]
-
-
-def test_what_is_taken_along_and_not_written_yet_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "toy.py"
-    path.write_bytes(kit_files(TOY)["toy.py"])
-    assert taken_along(path) == (
-        f"Taken along: your {path}; weighted_sum, weighted_sum_backward, descend are not written "
-        "there yet: copy it again when you have finished it"
-    )
-    text = path.read_text("utf-8")
-    stub = 'raise NotImplementedError("90.1 weighted_sum: see the handout, section 1")'
-    assert text.count(stub) == 1
-    path.write_text(text.replace(stub, "return 7.0"), encoding="utf-8")
-    assert "; weighted_sum_backward, descend are not written there yet: " in taken_along(path)
-    shutil.copy(TOY / "toy.py", path)
-    assert taken_along(path) == f"Taken along: your {path}"
 
 
 def test_a_module_that_nobody_has_is_named(folder: Path) -> None:

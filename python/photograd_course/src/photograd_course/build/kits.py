@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
 from collections.abc import Mapping
@@ -9,9 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..assignment.bundle import Bundle, read_folder
-from ..assignment.manifest import Manifest
+from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.toml import read_toml
-from ..errors import IoError, RangeError, message
+from ..errors import IoError, RangeError, SceneError, message
 from ..suggest import choose_from
 from .public import kit_files, public_files
 
@@ -40,6 +41,23 @@ class Kit:
 def list_kits(root: Path | None = None) -> list[str]:
     """Folder names such as "01_gradient_descent", in order."""
     return sorted(_places(root))
+
+
+def list_manifests(root: Path | None = None) -> list[Manifest]:
+    """The manifests of all assignments that can be started here, in order.
+
+    One that cannot be read is left out: it says so where it is asked for itself.
+    """
+    found = []
+    for _, place in sorted(_places(root).items()):
+        with contextlib.suppress(IoError, SceneError):
+            found.append(read_manifest(manifest_folder(place)))
+    return found
+
+
+def manifest_folder(place: Path) -> Path:
+    """Where the manifest of an assignment lies: in its source, or in a wheel's public part."""
+    return place / "public" if (place / "kit").is_dir() else place
 
 
 def find_kit(id_or_name: str, root: Path | None = None) -> Kit:

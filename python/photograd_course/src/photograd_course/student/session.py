@@ -16,11 +16,13 @@ from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
 from ..assignment.questions import LETTERS, Question
 from ..atomic_io import atomic_write
+from ..build.kits import list_manifests
 from ..cli.output import emit
 from ..errors import IoError, SceneError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
 from .checking import check_here, select
+from .comparing import differences, said_of_difference
 from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
@@ -45,6 +47,8 @@ def run_check_command(
     files = folder.files()
     require_brought(bundle.manifest, files)
     lock_predictions(bundle, folder, console)
+    for each in differences(folder, list_manifests()):
+        console.print(said_of_difference(each, bundle.manifest.id), soft_wrap=True, markup=False)
 
     def show(outcome: Outcome, printed: str) -> None:
         print_outcome(outcome, console, bundle.manifest)

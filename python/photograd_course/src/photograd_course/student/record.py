@@ -1,0 +1,73 @@
+"""What a folder knows of the modules that were taken along from earlier assignments.
+
+Kept in `brought.json`, so that a later difference can be traced to the side that has changed, and
+checks that a module has passed need not be run again. Nothing rests on it: where it is missing or
+damaged, less can be told.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..atomic_io import atomic_write
+
+RECORD_NAME = "brought.json"
+
+
+class Record:
+    """The file of one folder."""
+
+    def __init__(self, folder: Path) -> None:
+        """Read it; where it is missing or damaged, nothing is known."""
+        self._path = folder / RECORD_NAME
+        table = _read(self._path)
+        self._taken = _texts(table.get("taken"))
+        self._passed = _texts(table.get("passed"))
+
+    def taken(self, module: str) -> str | None:
+        """The text of a module when it was taken along."""
+        return self._taken.get(module)
+
+    def note_taken(self, texts: Mapping[str, str]) -> None:
+        """Note what is about to be written; before it is, so that nothing else looks edited.
+
+        Raises:
+            IoError: it cannot be written.
+        """
+        if any(self._taken.get(name) != text for name, text in texts.items()):
+            self._taken.update(texts)
+            self._write()
+
+    def has_passed(self, assignment: str, digest: str) -> bool:
+        """Whether just this has passed the checks of an earlier assignment."""
+        return self._passed.get(assignment) == digest
+
+    def note_passed(self, assignment: str, digest: str) -> None:
+        """Note that it has.
+
+        Raises:
+            IoError: it cannot be written.
+        """
+        self._passed[assignment] = digest
+        self._write()
+
+    def _write(self) -> None:
+        table = {"taken": self._taken, "passed": self._passed}
+        text = json.dumps(table, indent=1, sort_keys=True)
+        atomic_write(self._path, f"{text}\n".encode())
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return table if isinstance(table, dict) else {}
+
+
+def _texts(table: object) -> dict[str, str]:
+    entries = table.items() if isinstance(table, dict) else ()
+    return {str(key): value for key, value in entries if isinstance(value, str)}
