@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import tempfile
 from collections.abc import Mapping
@@ -31,11 +32,13 @@ class Kit:
         manifest: of the assignment.
         files: of the student's folder, path to content.
         bundle: the public checks and questions.
+        digest: of the files that these come from.
     """
 
     manifest: Manifest
     files: Mapping[str, bytes]
     bundle: Bundle
+    digest: str
 
 
 def list_kits(root: Path | None = None) -> list[str]:
@@ -80,7 +83,9 @@ def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
     else:
         files, public = kit_files(place), public_files(place)
     bundle = bundle_of(public, name)
-    return Kit(bundle.manifest, files, bundle)
+    digests = [f"{path} {hashlib.sha256(data).hexdigest()}" for path, data in public.items()]
+    digest = hashlib.sha256("\n".join(digests).encode()).hexdigest()
+    return Kit(bundle.manifest, files, bundle, digest)
 
 
 def require_ready(id_or_name: str, folders: list[str], root: Path | None = None) -> None:

@@ -60,6 +60,7 @@ def run_checks(
     *,
     open_control: OpenControl | None = None,
     on_outcome: Callable[[Outcome], None] | None = None,
+    wrong: Mapping[str, str] | None = None,
 ) -> list[Outcome]:
     """The outcome of every check, none missing, in the given order.
 
@@ -77,8 +78,9 @@ def run_checks(
         open_control: starts the solution in the same way; None where it is not at hand.
         on_outcome: called after each check; where the price of an adjoint proves too high later,
             the outcomes that are returned have the last word.
+        wrong: functions that are known to be wrong beforehand, to the check that says so.
     """
-    failed: dict[str, str] = {}  # function of the submission to the check in which it failed
+    failed = dict(wrong or {})  # function of the submission to the check in which it failed
     judge = _Judge(open_student, open_control)
     outcomes = []
     for check in checks:

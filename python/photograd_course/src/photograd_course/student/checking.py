@@ -42,6 +42,7 @@ def check_here(
     files: Mapping[str, bytes],
     checks: Sequence[Check],
     on_outcome: Callable[[Outcome, str], None] | None = None,
+    wrong: Mapping[str, str] | None = None,
 ) -> list[Outcome]:
     """Run `checks` on a submission of this machine's user. The verdict is indicative only.
 
@@ -51,6 +52,8 @@ def check_here(
         checks: those to run.
         on_outcome: called after each with what the submission has printed meanwhile. Nothing is
             read from it: verdicts rest on the frames of another pipe.
+        wrong: functions that are known to be wrong, to what says so; a check that needs one of
+            them and fails is blocked.
     """
     hand = replace(bundle.hand(files), adjoints=adjoint_functions(checks))
     with scratch_folder() as scratch:
@@ -68,7 +71,7 @@ def check_here(
             worker.request("start", {}, seconds=START_SECONDS)
             return RemoteStudent(worker, replace(hand, substitutes=dict(substitutes)))
 
-        return run_checks(checks, bundle.setting, open_student, on_outcome=tell)
+        return run_checks(checks, bundle.setting, open_student, on_outcome=tell, wrong=wrong)
 
 
 def _environment() -> dict[str, str]:

@@ -8,7 +8,7 @@ damaged, less can be told.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ class Record:
         self._path = folder / RECORD_NAME
         table = _read(self._path)
         self._taken = _texts(table.get("taken"))
-        self._passed = _texts(table.get("passed"))
+        self._passed = _lists(table.get("passed"))
 
     def taken(self, module: str) -> str | None:
         """The text of a module when it was taken along."""
@@ -41,17 +41,23 @@ class Record:
             self._taken.update(texts)
             self._write()
 
-    def has_passed(self, assignment: str, digest: str) -> bool:
-        """Whether just this has passed the checks of an earlier assignment."""
-        return self._passed.get(assignment) == digest
+    def passed(self, digest: str) -> frozenset[str]:
+        """Ids of the checks that have been passed by just this text of a module."""
+        return frozenset(self._passed.get(digest, ()))
 
-    def note_passed(self, assignment: str, digest: str) -> None:
-        """Note that it has.
+    def note_passed(self, digest: str, earlier: str, checks: Iterable[str]) -> None:
+        """Note that these were passed; what is noted of another text is forgotten.
+
+        Args:
+            digest: of the module, and of what looks at it; it begins with ``earlier``.
+            earlier: number of the assignment that owns the module.
+            checks: ids.
 
         Raises:
             IoError: it cannot be written.
         """
-        self._passed[assignment] = digest
+        kept = {key: ids for key, ids in self._passed.items() if not key.startswith(earlier)}
+        self._passed = {**kept, digest: sorted({*self.passed(digest), *checks})}
         self._write()
 
     def _write(self) -> None:
@@ -71,3 +77,12 @@ def _read(path: Path) -> dict[str, Any]:
 def _texts(table: object) -> dict[str, str]:
     entries = table.items() if isinstance(table, dict) else ()
     return {str(key): value for key, value in entries if isinstance(value, str)}
+
+
+def _lists(table: object) -> dict[str, list[str]]:
+    entries = table.items() if isinstance(table, dict) else ()
+    return {
+        str(key): [each for each in value if isinstance(each, str)]
+        for key, value in entries
+        if isinstance(value, list)
+    }

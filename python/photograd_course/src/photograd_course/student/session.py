@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Container, Mapping, MutableMapping, Sequence
+from collections.abc import Container, Mapping, MutableMapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,18 +21,21 @@ from ..cli.output import emit
 from ..errors import IoError, SceneError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
+from .brought_checks import Looked, look_at_brought, uses_of, with_needs
+from .brought_report import print_brought
 from .checking import check_here, select
 from .comparing import differences, said_of_difference
 from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
+from .record import Record
 from .terminal import print_outcome, print_printed, print_rest, print_summary
 
 
 def run_check_command(
     bundle: Bundle, given: Path | None, task: str | None, *, pictures: bool, as_json: bool
 ) -> bool:
-    """Lock predictions, run checks, report; True if all passed.
+    """Lock predictions, look at what was brought along, run checks, report; True if all passed.
 
     Args:
         bundle: the public one.
@@ -47,36 +50,70 @@ def run_check_command(
     files = folder.files()
     require_brought(bundle.manifest, files)
     lock_predictions(bundle, folder, console)
-    for each in differences(folder, list_manifests()):
-        console.print(said_of_difference(each, bundle.manifest.id), soft_wrap=True, markup=False)
+    looked = _look_at_brought(bundle, folder, files, None if task is None else checks, console)
+    if looked.culprits:
+        checks = with_needs(checks, uses_of(bundle, files), looked)
 
     def show(outcome: Outcome, printed: str) -> None:
         print_outcome(outcome, console, bundle.manifest)
         if outcome.status is not Status.PASSED or task is not None:
             print_printed(printed, console)
-        remove_picture(outcome, folder.path)
-        if pictures and (path := draw_failure(outcome, folder.path)) is not None:
-            console.print(f"    picture: {path.name}", soft_wrap=True)
+        _draw(outcome, folder.path, console, pictures=pictures)
 
-    outcomes = check_here(bundle, files, checks, on_outcome=show)
+    outcomes = check_here(bundle, files, checks, on_outcome=show, wrong=looked.wrong)
     print_summary(outcomes, console)
     if task is None:
         print_rest(bundle, console)
-    passed = all(outcome.status is Status.PASSED for outcome in outcomes)
+    all_own = all(outcome.status is Status.PASSED for outcome in outcomes)
+    passed = all_own and not looked.culprits
     if passed and task is None:
         next_command = f"photograd course submit {bundle.manifest.id}"
         first = "Answer the questions, then: " if bundle.questions else "Next: "
         console.print(f"All green. {first}{next_command}", soft_wrap=True)
-    own = {function for each in bundle.manifest.tasks for function in each.functions}
-    if not passed and (earlier := earlier_functions(checks, own)):
+    elif all_own and looked.culprits:
+        names = ", ".join(each.name for each in looked.culprits)
+        console.print(
+            f"All that is looked at here passes, but {names} is wrong: other checks may show it.",
+            soft_wrap=True,
+        )
+    if not passed and (earlier := earlier_functions(checks)):
         console.print(
             f"Only this task was looked at; it uses {', '.join(earlier)}. If it puzzles you, run "
             f"photograd course check {bundle.manifest.id}: begin with what fails first.",
             soft_wrap=True,
         )
     if as_json:
-        emit(as_result(bundle, outcomes), as_json=True)
+        emit(as_result(bundle, outcomes, looked), as_json=True)
     return passed
+
+
+def _look_at_brought(
+    bundle: Bundle,
+    folder: WorkFolder,
+    files: Mapping[str, bytes],
+    checks: Sequence[Check] | None,
+    console: Console,
+) -> Looked:
+    """Say in what earlier files differ from their origins, and run their own checks."""
+    number, manifests = bundle.manifest.id, list_manifests()
+    found = differences(folder, manifests)
+    for each in found:
+        console.print(said_of_difference(each, number), soft_wrap=True, markup=False)
+    looked = look_at_brought(bundle, files, checks, manifests, Record(folder.path))
+    print_brought(looked, bundle.manifest, found, console)
+    return looked
+
+
+def _draw(outcome: Outcome, folder: Path, console: Console, *, pictures: bool) -> None:
+    """The picture of a failed check instead of that of an earlier run; no verdict rests on it."""
+    try:
+        remove_picture(outcome, folder)
+        path = draw_failure(outcome, folder) if pictures else None
+    except OSError as error:
+        console.print(f"    no picture: {error}", soft_wrap=True, markup=False)
+        return
+    if path is not None:
+        console.print(f"    picture: {path.name}", soft_wrap=True)
 
 
 def require_brought(manifest: Manifest, files: Container[str]) -> None:
@@ -92,21 +129,18 @@ def require_brought(manifest: Manifest, files: Container[str]) -> None:
             raise IoError(message("check", f"{name}.py", expected, "none", "put it there"))
 
 
-def earlier_functions(checks: Sequence[Check], own: Collection[str] | None = None) -> list[str]:
+def earlier_functions(checks: Sequence[Check]) -> list[str]:
     """What these checks need of earlier tasks that none of them looks at.
 
     Args:
         checks: those of one task.
-        own: the functions of this assignment; what a check calls besides was brought along from
-            an earlier one. By default nothing was.
     """
-    called = dict.fromkeys(function for check in checks for function in check.calls)
-    brought = [function for function in called if own is not None and function not in own]
+    called = {function for check in checks for function in check.calls}
     needed = dict.fromkeys(function for check in checks for function in check.needs)
-    return [each for each in needed if each not in called] + brought
+    return [each for each in needed if each not in called]
 
 
-def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:
+def as_result(bundle: Bundle, outcomes: list[Outcome], looked: Looked) -> dict[str, object]:
     """The JSON form, equal to that of `grade` in what both have."""
     return {
         "assignment": bundle.manifest.id,
@@ -114,6 +148,10 @@ def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:
         "indicative": True,
         "score": sum(outcome.points for outcome in outcomes),
         "max_score": sum(outcome.max for outcome in outcomes),
+        "brought": [
+            {"function": each.name, "check": each.outcome.id, "text": each.outcome.text}
+            for each in looked.culprits
+        ],
         "checks": [
             {"id": o.id, "status": o.status.value, "points": o.points, "max": o.max, "text": o.text}
             for o in outcomes

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from rich.console import Console
@@ -12,6 +11,7 @@ from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
 from ..grading.outcome import Outcome, Status
 from ..printable import printable
+from .source_code import SAID_OF_STUB
 
 # Sign and color: the sign alone says it, for readers who do not see the color.
 MARKS = {
@@ -20,9 +20,7 @@ MARKS = {
     Status.BLOCKED: ("·", "yellow"),
     Status.ERROR_OURS: ("!", "magenta"),
 }
-# What a stub raises; see `build.regions`.
 MOST_LINES, LONGEST_LINE = 20, 200  # of what is printed
-STUB = re.compile(r"(\d\d)\.\d+ (\w+): see the handout, section \d+")
 
 
 def print_outcome(outcome: Outcome, console: Console, manifest: Manifest | None = None) -> None:
@@ -57,13 +55,13 @@ def print_printed(text: str, console: Console) -> None:
 
 def said_of(said: str, manifest: Manifest) -> str:
     """The text of an exception; of a stub of an earlier assignment, what to do about it."""
-    stub = STUB.fullmatch(said)
+    stub = SAID_OF_STUB.fullmatch(said)
     if stub is None or stub[1] == manifest.id:
         return said  # the handout that it names is this assignment's
     files = " or ".join(f"{name}.py" for name in manifest.brought) or "the file that has it"
     return (
-        f"{stub[2]} is from assignment {stub[1]} and not written in this folder: copy your "
-        f"finished {files} over the stub that came with the kit"
+        f"{stub[2]} is from assignment {stub[1]} and not written in this folder: when it is in "
+        f"that of {stub[1]}, 'photograd course start {manifest.id} --update' copies your {files}"
     )
 
 
