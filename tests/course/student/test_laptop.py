@@ -97,6 +97,14 @@ def test_a_planned_assignment_is_known_without_a_checkout(laptop: Laptop, tmp_pa
         assert f"{entry['title']}, which is planned" in " ".join(told.stderr.split())
 
 
+def test_the_plan_of_the_course_is_known_without_a_checkout(laptop: Laptop, tmp_path: Path) -> None:
+    told = laptop.run("course", "syllabus", "quarter", "--json", cwd=tmp_path)
+    assert told.returncode == 0, told.stderr
+    weeks = json.loads(told.stdout.splitlines()[-1])["weeks"]
+    assert {"00", "01", "02", "15"} <= {week["assignment"] for week in weeks}
+    assert all(week["state"] == "ready" and week["title"] for week in weeks)
+
+
 def test_the_core_is_said_to_be_missing_and_costs_nothing(laptop: Laptop, tmp_path: Path) -> None:
     told = laptop.run("fit", "x", cwd=tmp_path)
     assert told.returncode == 2

@@ -18,10 +18,11 @@ from photograd_course.cli.course.start import _next_steps
 from photograd_course.errors import IoError
 from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.student.asking import ask
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.next_steps import next_steps
 from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
-from photograd_course.student.session import ask, earlier_functions, require_brought
+from photograd_course.student.session import earlier_functions, require_brought
 from photograd_course.student.terminal import said_of
 from rich.console import Console
 

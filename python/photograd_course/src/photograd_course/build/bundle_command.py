@@ -7,6 +7,7 @@ from pathlib import Path
 from ..atomic_io import atomic_write
 from ..cli.failures import complain
 from ..cli.output import emit
+from ..student.packing import require_archive_or_free
 from .command import bar, chosen_folders, read_wheels
 from .course_files import build_of
 from .gradescope import gradescope_zip
@@ -36,6 +37,8 @@ def bundle_command(
         IoError, RangeError, SceneError: as for `build_command`.
     """
     root, folders = chosen_folders([number])
+    if out is not None:
+        require_archive_or_free("bundle", out)
     folder = next(iter(folders.values()))
     secret, place = course_secret(secret_file, root.parent / "build" / "course")
     build = build_of(folder, root=root, secret=secret, bar=bar)

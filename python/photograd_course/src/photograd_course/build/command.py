@@ -13,7 +13,7 @@ from ..cli.output import emit, note
 from ..cli.progress import Progress
 from ..errors import IoError, message
 from .assignment_build import AssignmentBuild
-from .course_file import NAME, course_findings, read_course
+from .course_file import NAME, course_findings, plan_without, read_course
 from .course_files import build_of
 from .hint_table import public_hints, write_hints
 from .kits import match_folder, no_sources, source_folders, source_root
@@ -118,9 +118,10 @@ def _publish(root: Path, folders: dict[str, Path], out: Path, found: list[Findin
     if found:
         return []
     files: dict[str, bytes] = {}
-    for path in (root / NAME, root / GLOSSARY):
-        if path.exists():
-            files[path.name] = path.read_bytes()
+    if (root / NAME).exists():
+        files[NAME] = plan_without(root, folders)
+    if (root / GLOSSARY).exists():
+        files[GLOSSARY] = (root / GLOSSARY).read_bytes()
     for name, folder in folders.items():
         files.update({f"{name}/{path}": data for path, data in publishable(folder).items()})
     write_tree(out / "assignments", files)

@@ -52,15 +52,18 @@ def list_manifests(root: Path | None = None) -> list[Manifest]:
     One that cannot be read is left out: it says so where it is asked for itself.
     """
     found = []
-    for _, place in sorted(_places(root).items()):
+    for folder in manifest_folders(root).values():
         with contextlib.suppress(IoError, SceneError):
-            found.append(read_manifest(manifest_folder(place)))
+            found.append(read_manifest(folder))
     return found
 
 
-def manifest_folder(place: Path) -> Path:
-    """Where the manifest of an assignment lies: in its source, or in a wheel's public part."""
-    return place / "public" if (place / "kit").is_dir() else place
+def manifest_folders(root: Path | None = None) -> dict[str, Path]:
+    """Where the manifest of each assignment lies, by folder name: in its source, or in a wheel."""
+    return {
+        name: place / "public" if (place / "kit").is_dir() else place
+        for name, place in sorted(_places(root).items())
+    }
 
 
 def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
@@ -117,11 +120,15 @@ def require_ready(id_or_name: str, folders: list[str], root: Path | None = None)
 
 def _plan(root: Path | None) -> list[Mapping[str, object]]:
     """The assignments that the course plans, as its file names them; none where it has no file."""
-    for top in (root or source_root(), PACKAGE / "kits"):
-        if top is not None and (top / PLAN).is_file():
-            entries = read_toml(top / PLAN).get("assignment", [])
-            return [entry for entry in entries if isinstance(entry, dict)]
-    return []
+    top = plan_folder(root)
+    entries = read_toml(top / PLAN).get("assignment", []) if top else []
+    return [entry for entry in entries if isinstance(entry, dict)]
+
+
+def plan_folder(root: Path | None = None) -> Path | None:
+    """Where the plan of the course lies: among its sources, or with the kits of a wheel."""
+    tops = (root or source_root(), PACKAGE / "kits")
+    return next((top for top in tops if top is not None and (top / PLAN).is_file()), None)
 
 
 def match_folder(id_or_name: str, folders: list[str]) -> str:

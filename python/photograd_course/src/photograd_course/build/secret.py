@@ -6,6 +6,7 @@ import os
 import secrets
 from pathlib import Path
 
+from ..atomic_io import atomic_write
 from ..errors import IoError, SceneError, message
 
 ENVIRONMENT = "PHOTOGRAD_COURSE_SECRET"
@@ -58,10 +59,16 @@ def make_secret(path: Path) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        (path.parent / ".gitignore").write_text("*\n", encoding="utf-8")
-        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        atomic_write(path.parent / ".gitignore", b"*\n")
+        # Whole or not at all: half a secret would be refused from then on.
+        fresh = path.with_name(f".{path.name}.{os.getpid()}.new")
+        fresh.unlink(missing_ok=True)
+        handle = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "w", encoding="ascii") as file:
             file.write(secrets.token_hex(BYTES) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+        fresh.rename(path)
     except OSError as error:
         got = error.strerror or str(error)
         raise IoError(message("make_secret", str(path), "a new file", got)) from error

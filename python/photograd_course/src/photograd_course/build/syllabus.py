@@ -8,7 +8,7 @@ from typing import Any
 from ..cli.output import emit
 from ..errors import SceneError, message
 from .course_file import course_findings, read_course
-from .kits import no_sources, source_root
+from .kits import no_sources, plan_folder
 
 
 def syllabus(track: str, root: Path) -> dict[str, Any]:
@@ -51,9 +51,9 @@ def print_syllabus(track: str, *, as_json: bool) -> None:
     """`photograd course syllabus`.
 
     Raises:
-        IoError: this is no checkout.
+        IoError: there is no plan of a course here.
     """
-    root = source_root()
+    root = plan_folder()
     if root is None:
         raise no_sources("syllabus", "course.toml")
     emit(syllabus(track, root), as_json=as_json)

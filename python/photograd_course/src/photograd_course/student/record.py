@@ -23,7 +23,7 @@ class Record:
     def __init__(self, folder: Path) -> None:
         """Read it; where it is missing or damaged, nothing is known."""
         self._path = folder / RECORD_NAME
-        table = _read(self._path)
+        table = read_table(self._path)
         self._taken = _texts(table.get("taken"))
         self._passed = _lists(table.get("passed"))
 
@@ -66,7 +66,8 @@ class Record:
         atomic_write(self._path, f"{text}\n".encode())
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_table(path: Path) -> dict[str, Any]:
+    """A JSON object; empty where the file is missing, damaged or something else."""
     try:
         table = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Container, Mapping, MutableMapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-import tomlkit
-import typer
 from rich.console import Console
-from tomlkit.exceptions import TOMLKitError
 
 from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
-from ..assignment.questions import LETTERS, Question
-from ..atomic_io import atomic_write
 from ..build.kits import list_manifests
 from ..cli.output import emit
-from ..errors import IoError, SceneError, message
+from ..errors import IoError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
+from .asking import lock_predictions
 from .brought_checks import Looked, look_at_brought, uses_of, with_needs
 from .brought_report import print_brought
 from .checking import check_here, select
 from .comparing import differences, said_of_difference
-from .folder import LOCK_NAME, WorkFolder, find_folder
+from .folder import WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
-from .predictions import prediction_letters, write_lock
 from .record import Record
 from .terminal import print_outcome, print_printed, print_rest, print_summary
 
@@ -157,95 +150,3 @@ def as_result(bundle: Bundle, outcomes: list[Outcome], looked: Looked) -> dict[s
             for o in outcomes
         ],
     }
-
-
-def lock_predictions(bundle: Bundle, folder: WorkFolder, console: Console) -> None:
-    """Lock the predictions in answers.toml, asking for those that lack where someone can answer.
-
-    Raises:
-        SceneError: predictions are missing, and nobody is there to ask.
-    """
-    if (folder.path / LOCK_NAME).exists():
-        return
-    _, answers = folder.answers()
-    made, lacking = prediction_letters(bundle.questions, answers)
-    if not made and not lacking:
-        return
-    number = bundle.manifest.id
-    if lacking and not sys.stdin.isatty():
-        names = ", ".join(question.id for question in lacking)
-        remedy = (
-            f"write a letter for each into answers.toml, or run 'photograd course predict {number}'"
-        )
-        expected = "predictions before the first check"
-        raise SceneError(message("check", "answers.toml", expected, f"none for {names}", remedy))
-    if lacking:
-        made = {**made, **ask(lacking, folder, console)}
-    write_lock(folder.path, number, made)
-    console.print(f"Predictions locked in {LOCK_NAME}.", soft_wrap=True)
-
-
-def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict[str, str]:
-    """Ask for predictions on the terminal and write them into answers.toml."""
-    console.print(
-        "Before the first check: what do you expect? Each earns its points right or wrong.",
-        soft_wrap=True,
-    )
-    made = {}
-    for question in questions:
-        console.print(f"\n{question.id}  {question.text}", soft_wrap=True, markup=False)
-        letters = LETTERS[: len(question.options)]
-        for letter, option in zip(letters, question.options, strict=True):
-            console.print(f"  {letter}) {option}", soft_wrap=True, markup=False)
-        answer = ""
-        while len(answer) != 1 or answer not in letters:
-            answer = _prompt(f"Your prediction ({'/'.join(letters)})", console)
-        made[question.id] = answer
-        write_answers(folder.path / "answers.toml", {question.id: answer})  # kept if interrupted
-    return made
-
-
-def _prompt(text: str, console: Console) -> str:
-    """One answer; where the input ends instead, say that nothing is lost."""
-    try:
-        return str(typer.prompt(text)).strip().lower()
-    except typer.Abort:
-        said = "\nAnswers so far are saved in answers.toml; run this again for those that are open."
-        console.print(said, soft_wrap=True)
-        raise
-
-
-def write_answers(path: Path, made: Mapping[str, str]) -> None:
-    """Fill in answers of a TOML file, leaving everything else as it is, comments included.
-
-    Args:
-        path: of the file; made where there is none.
-        made: answers by id; each replaces the one that is there, however its key is written.
-
-    Raises:
-        IoError: the file is no TOML, or its `answers` are no table.
-    """
-    try:
-        document = tomlkit.parse(path.read_bytes().decode("utf-8") if path.exists() else "")
-        answers = document.setdefault("answers", tomlkit.table())
-        if not isinstance(answers, MutableMapping):
-            raise _unwritable(path, "a table [answers]", type(answers).__name__)
-        for name, answer in made.items():
-            _put(answers, name, answer)
-    except (TOMLKitError, ValueError) as error:
-        raise _unwritable(path, "TOML", str(error)) from error
-    atomic_write(path, tomlkit.dumps(document).encode())
-
-
-def _put(answers: MutableMapping[str, Any], name: str, answer: str) -> None:
-    task, _, rest = name.partition(".")
-    inner = answers.get(task)  # of keys without quotes, such as 01.p1
-    dotted = inner if isinstance(inner, MutableMapping) and rest in inner else None
-    if dotted is not None:
-        dotted[rest] = answer
-    if name in answers or dotted is None:
-        answers[name] = answer
-
-
-def _unwritable(path: Path, expected: str, got: str) -> IoError:
-    return IoError(message("predict", path.name, expected, got, "mend the file by hand"))

@@ -43,20 +43,23 @@ def register(course: typer.Typer) -> None:
         files = work.files()
         found = differences(work, list_manifests())
         target = out or work.path / f"{bundle.manifest.folder_name}_submission.zip"
-        digest = pack(files, target)
-        if lacking := [name for name in bundle.manifest.submission if name not in files]:
-            note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
         notes = [
             *notes_before_submission(bundle, work),
             *(said_of_difference(each, bundle.manifest.id) for each in found),
         ]
+        student = work.answers()[0]
+        digest, kept = pack(files, target)
+        if kept is not None:
+            note(f"your earlier archive is kept as {kept.name}")
+        if lacking := [name for name in bundle.manifest.submission if name not in files]:
+            note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
         for text in notes:
             note(text, style="yellow")
         result: dict[str, object] = {"notes": len(notes)} if notes or as_json else {}
         emit(
             {
                 "archive": target,
-                "student": work.answers()[0],
+                "student": student,
                 "files": " ".join(sorted(files)),
                 **result,
                 "sha256": digest,
