@@ -45,6 +45,7 @@ def _update(work: WorkFolder, module: str, manifests: Sequence[Manifest], record
         return f"{path.name}: taken from {best.path}"
     own = read_file(path)
     if not changed_code(text_of(own), best.source):
+        record.note_taken({module: text_of(own)})  # also where a run was cut off before that
         return f"{path.name}: the same code as {best.path}"
     here = unwritten(text_of(own), functions_of(owner))
     if len(here) < len(best.unwritten):
