@@ -21,6 +21,8 @@ from .hints import find_hint
 from .outcome import Outcome, Status
 from .trial import Student, Trial
 
+# Verdicts that a wrong value of an earlier function can bring about.
+OF_VALUES = ("wrong", "raised", "output", "not implemented")
 Open = Callable[[Mapping[str, Callable[..., Any]]], Student]
 OpenControl = Callable[[], Student]
 
@@ -34,6 +36,8 @@ class Setting:
         seed: numbers that, with a check's id, give its random stream.
         reference: the solution's module, or None on a student's machine.
         hints, salt: the table of known mistakes.
+        earlier: functions of earlier assignments that a check uses, as "module.name" by which a
+            module of the submission knows them, to those of the solutions.
     """
 
     module: str
@@ -41,6 +45,7 @@ class Setting:
     reference: Any = None
     hints: Mapping[str, str] = field(default_factory=dict)
     salt: str = ""
+    earlier: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
 
 
 @dataclass
@@ -121,7 +126,8 @@ class _Judge:
     def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
         culprits = [name for name in check.needs if name in failed]
         verdict = self._blamed(check, setting, {})
-        if verdict.status is not Status.FAILED or not culprits:
+        may_be_earlier = setting.earlier and verdict.reason in OF_VALUES
+        if verdict.status is not Status.FAILED or not (culprits or may_be_earlier):
             return verdict
         if setting.reference is None:
             if verdict.reason == "not implemented":
@@ -132,10 +138,21 @@ class _Judge:
         substitutes = {
             f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
         }
-        second = self._blamed(check, setting, substitutes)
-        if second.status is Status.PASSED:
-            second.text = f"with the reference's {', '.join(culprits)}"
-            return second
+        if culprits:
+            second = self._blamed(check, setting, substitutes)
+            if second.status is Status.PASSED:
+                second.text = f"with the reference's {', '.join(culprits)}"
+                return second
+        if may_be_earlier:
+            last = self._blamed(check, setting, {**setting.earlier, **substitutes})
+            if last.status is Status.PASSED:
+                brought = sorted({name.rpartition(".")[2] for name in setting.earlier})
+                whose = "yours" if len(brought) == 1 else "one of yours"
+                last.text = (
+                    f"with the reference's {', '.join([*culprits, *brought])}: {whose}, brought "
+                    "from an earlier assignment, is wrong"
+                )
+                return last
         return verdict
 
     def _blamed(

@@ -56,6 +56,10 @@ class Uses:
         starts = [name for name in (*self._used, *self._imported) if name[0] in own]
         return self.reached(".".join(name) for name in starts)
 
+    def names(self) -> dict[Name, Name]:
+        """Each name of a module to what it stands for: where it is defined, or imported from."""
+        return {**{name: name for name in self._used}, **self._imported}
+
     def _found(self, name: str) -> Name | None:
         first, _, rest = name.partition(".")
         own, other = (self._graded, first), (first, rest.partition(".")[0])

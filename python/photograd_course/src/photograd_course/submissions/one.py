@@ -23,6 +23,7 @@ from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from ..printable import printable
 from .answers import Answered, all_answered, plain_answers, score_answers
+from .earlier import setting_with_earlier
 from .report import Report, staff_notes, versions
 from .submission import Submission
 from .workers import Budget, Clocked, Workers
@@ -174,7 +175,7 @@ def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) 
 
     found = run_checks(
         bundle.checks,
-        bundle.setting,
+        setting_with_earlier(bundle, case.submission.files),
         open_student,
         open_control=open_control if bundle.solution else None,
         on_outcome=on_outcome,
