@@ -42,7 +42,11 @@ class Kit:
 
 
 def list_kits(root: Path | None = None) -> list[str]:
-    """Folder names such as "01_gradient_descent", in order."""
+    """Folder names such as "01_gradient_descent", in order.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     return sorted(_places(root))
 
 
@@ -50,6 +54,9 @@ def list_manifests(root: Path | None = None) -> list[Manifest]:
     """The manifests of all assignments that can be started here, in order.
 
     One that cannot be read is left out: it says so where it is asked for itself.
+
+    Args:
+        root: a folder of assignments, or None for those that are here.
     """
     found = []
     for folder in manifest_folders(root).values():
@@ -59,7 +66,11 @@ def list_manifests(root: Path | None = None) -> list[Manifest]:
 
 
 def manifest_folders(root: Path | None = None) -> dict[str, Path]:
-    """Where the manifest of each assignment lies, by folder name: in its source, or in a wheel."""
+    """Where the manifest of each assignment lies, by folder name: in its source, or in a wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     return {
         name: place / "public" if (place / "kit").is_dir() else place
         for name, place in sorted(_places(root).items())
@@ -126,7 +137,11 @@ def _plan(root: Path | None) -> list[Mapping[str, object]]:
 
 
 def plan_folder(root: Path | None = None) -> Path | None:
-    """Where the plan of the course lies: among its sources, or with the kits of a wheel."""
+    """Where the plan of the course lies: among its sources, or with the kits of a wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     tops = (root or source_root(), PACKAGE / "kits")
     return next((top for top in tops if top is not None and (top / PLAN).is_file()), None)
 
@@ -147,7 +162,11 @@ def match_folder(id_or_name: str, folders: list[str]) -> str:
 
 
 def source_folders(root: Path | None = None) -> dict[str, Path]:
-    """Assignments in source, by folder name; empty in an installed wheel."""
+    """Assignments in source, by folder name; empty in an installed wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     top = root or source_root()
     if top is None or not top.is_dir():
         return {}

@@ -25,6 +25,11 @@ from .predictions import prediction_letters, write_lock
 def lock_predictions(bundle: Bundle, folder: WorkFolder, console: Console) -> None:
     """Lock the predictions in answers.toml, asking for those that lack where someone can answer.
 
+    Args:
+        bundle: of the assignment.
+        folder: the student's.
+        console: to ask and to print.
+
     Raises:
         SceneError: predictions are missing, and nobody is there to ask.
     """
@@ -46,6 +51,11 @@ def ask_where_one_can(
     lacking: list[Question], folder: WorkFolder, console: Console
 ) -> dict[str, str]:
     """`ask`; where nobody can answer, show all that is open and say how to answer it otherwise.
+
+    Args:
+        lacking: the questions.
+        folder: the student's.
+        console: to ask and to print.
 
     Raises:
         SceneError: the input has ended, or this runs in a notebook.
@@ -86,7 +96,13 @@ def nobody_to_ask(command: str, lacking: Sequence[Question], number: str) -> Sce
 
 
 def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict[str, str]:
-    """Ask for predictions on the terminal and write them into answers.toml."""
+    """Ask for predictions on the terminal and write them into answers.toml.
+
+    Args:
+        questions: those without an answer.
+        folder: the student's.
+        console: to ask and to print.
+    """
     console.print(
         "Before the first check: what do you expect? Each earns its points right or wrong.",
         soft_wrap=True,
@@ -110,7 +126,12 @@ def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict
 
 
 def print_question(question: Question, console: Console) -> None:
-    """A prediction and its options."""
+    """A prediction and its options.
+
+    Args:
+        question: what is asked.
+        console: to print to.
+    """
     console.print(f"\n{question.id}  {question.text}", soft_wrap=True, markup=False)
     for letter, option in zip(LETTERS, question.options, strict=False):
         console.print(f"  {letter}) {option}", soft_wrap=True, markup=False)

@@ -99,7 +99,12 @@ def look_at_brought(
 
 
 def uses_of(bundle: Bundle, files: Mapping[str, bytes]) -> Uses:
-    """Who uses whom in a submission."""
+    """Who uses whom in a submission.
+
+    Args:
+        bundle: of the assignment.
+        files: of the submission.
+    """
     manifest = bundle.manifest
     modules = (*manifest.brought, manifest.module)
     sources = {name: text_of(files.get(f"{name}.py", b"")) for name in modules}

@@ -79,7 +79,12 @@ def difference(
 
 
 def differences(work: WorkFolder, manifests: Sequence[Manifest]) -> list[Difference]:
-    """Those of all modules that the assignment brings."""
+    """Those of all modules that the assignment brings.
+
+    Args:
+        work: the student's folder.
+        manifests: of all assignments.
+    """
     record = Record(work.path)
     found = (difference(work, name, manifests, record) for name in work.manifest.brought)
     return [each for each in found if each is not None]

@@ -86,6 +86,10 @@ class WorkFolder:
 def find_folder(manifest: Manifest, given: Path | None = None) -> WorkFolder:
     """The folder given, else this one if the graded module lies in it, else the kit's below it.
 
+    Args:
+        manifest: of the assignment.
+        given: by --dir, or None.
+
     Raises:
         IoError: no such folder, or only that of a later assignment, which holds a copy.
     """

@@ -56,6 +56,9 @@ def write_keeping(path: Path, content: bytes) -> Path | None:
 def read_file(path: Path) -> bytes:
     """The bytes of a file.
 
+    Args:
+        path: of the file.
+
     Raises:
         IoError: it cannot be read.
     """

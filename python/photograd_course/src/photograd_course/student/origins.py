@@ -41,17 +41,30 @@ class Found:
 
 
 def text_of(content: bytes) -> str:
-    """The text of a student's file, whatever bytes it holds."""
+    """The text of a student's file, whatever bytes it holds.
+
+    Args:
+        content: of the file.
+    """
     return content.decode("utf-8", errors="replace")
 
 
 def owner_of(module: str, manifests: Iterable[Manifest]) -> Manifest | None:
-    """The assignment whose graded module it is."""
+    """The assignment whose graded module it is.
+
+    Args:
+        module: its name, without ".py".
+        manifests: of all assignments.
+    """
     return next((each for each in manifests if each.module == module), None)
 
 
 def functions_of(manifest: Manifest | None) -> list[str]:
-    """The functions that an assignment asks for."""
+    """The functions that an assignment asks for.
+
+    Args:
+        manifest: of the assignment, or None for none.
+    """
     return [] if manifest is None else [name for task in manifest.tasks for name in task.functions]
 
 

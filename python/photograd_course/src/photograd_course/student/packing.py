@@ -42,6 +42,10 @@ def pack(files: Mapping[str, bytes], target: Path) -> tuple[str, Path | None]:
 def require_archive_or_free(function: str, target: Path) -> None:
     """Refuse to write an archive where something else lies: somebody's code, by a slip of --out.
 
+    Args:
+        function: for the message.
+        target: what would be written.
+
     Raises:
         IoError: the target is there, and no zip archive.
     """

@@ -34,6 +34,9 @@ class Record:
     def note_taken(self, texts: Mapping[str, str]) -> None:
         """Note what is about to be written; before it is, so that nothing else looks edited.
 
+        Args:
+            texts: by module.
+
         Raises:
             IoError: it cannot be written.
         """
@@ -42,7 +45,11 @@ class Record:
             self._write()
 
     def passed(self, digest: str) -> frozenset[str]:
-        """Ids of the checks that have been passed by just this text of a module."""
+        """Ids of the checks that have been passed by just this text of a module.
+
+        Args:
+            digest: of that text, and of what looks at it.
+        """
         return frozenset(self._passed.get(digest, ()))
 
     def note_passed(self, digest: str, earlier: str, checks: Iterable[str]) -> None:
@@ -67,7 +74,11 @@ class Record:
 
 
 def read_table(path: Path) -> dict[str, Any]:
-    """A JSON object; empty where the file is missing, damaged or something else."""
+    """A JSON object; empty where the file is missing, damaged or something else.
+
+    Args:
+        path: of the file.
+    """
     try:
         table = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

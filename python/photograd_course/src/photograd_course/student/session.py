@@ -112,6 +112,10 @@ def _draw(outcome: Outcome, folder: Path, console: Console, *, pictures: bool) -
 def require_brought(manifest: Manifest, files: Container[str]) -> None:
     """Every module of an earlier assignment must be there: without it nothing can be imported.
 
+    Args:
+        manifest: of the assignment.
+        files: names of those that are there.
+
     Raises:
         IoError: one is missing.
     """
@@ -134,7 +138,13 @@ def earlier_functions(checks: Sequence[Check]) -> list[str]:
 
 
 def as_result(bundle: Bundle, outcomes: list[Outcome], looked: Looked) -> dict[str, object]:
-    """The JSON form, equal to that of `grade` in what both have."""
+    """The JSON form, equal to that of `grade` in what both have.
+
+    Args:
+        bundle: of the assignment.
+        outcomes: of its checks.
+        looked: what is known of earlier modules.
+    """
     return {
         "assignment": bundle.manifest.id,
         "mode": "E",

@@ -18,7 +18,11 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def parsed(source: str) -> ast.Module | None:
-    """The syntax tree; None where the text is no Python."""
+    """The syntax tree; None where the text is no Python.
+
+    Args:
+        source: of a module.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a student's escapes and comparisons, said elsewhere
         try:
@@ -28,7 +32,11 @@ def parsed(source: str) -> ast.Module | None:
 
 
 def functions(tree: ast.Module) -> Iterator[tuple[str, Function]]:
-    """The functions of a module and the methods of its classes, such as "Value.exp"."""
+    """The functions of a module and the methods of its classes, such as "Value.exp".
+
+    Args:
+        tree: of the module.
+    """
     for node in tree.body:
         if isinstance(node, Function):
             yield node.name, node
@@ -63,6 +71,10 @@ def changed_code(one: str, other: str) -> list[str]:
 
     Comments, docstrings and the layout do not count. Where one is no Python, all that is known is
     whether their lines differ.
+
+    Args:
+        one: a text of the module.
+        other: another.
     """
     first, second = _code_parts(one), _code_parts(other)
     if first is None or second is None:

@@ -101,7 +101,11 @@ def taken_along(taken: Taken, number: str) -> str:
 
 
 def is_unwritten(names: Sequence[str]) -> str:
-    """Such as "gltf and ggx_pdf are not written"."""
+    """Such as "gltf and ggx_pdf are not written".
+
+    Args:
+        names: of functions.
+    """
     last = " and ".join(names) if len(names) < 3 else ", ".join(names)
     return f"{last} {'is' if len(names) == 1 else 'are'} not written"
 
