@@ -121,8 +121,8 @@ def write_tree(target: Path, files: Mapping[str, bytes]) -> None:
     Raises:
         IoError: the folder holds something else.
     """
-    if (found := _foreign(target, files)) is not None:
-        remedy = "nothing was written; give another folder with --out"
+    if (found := _foreign(target)) is not None:
+        remedy = "nothing was written; remove it, or give another folder with --out"
         expected = "a new folder, or one that an earlier build has written"
         raise IoError(message("build", str(target), expected, f"one with {found}", remedy))
     fresh = target.with_name(f".{target.name}.new")
@@ -138,17 +138,10 @@ def write_tree(target: Path, files: Mapping[str, bytes]) -> None:
     fresh.rename(target)
 
 
-def _foreign(target: Path, files: Mapping[str, bytes]) -> str | None:
-    """What in a folder no build has written; None where a build may replace it."""
+def _foreign(target: Path) -> str | None:
+    """What lies in a folder that no build has written; None where a build may replace it."""
     if not target.exists() or (target / BUILT).is_file():
         return None
     if not target.is_dir():
         return "a file of this name"
-    tops = {path.partition("/")[0] for path in files}
-    inside = {path.name for path in target.iterdir()}
-    # Builds of earlier versions left no mark. Sources have what no product has at that place.
-    is_source = any(target.glob("assignment.toml")) or any(target.glob("*/answers.py"))
-    strange = sorted(inside - tops)
-    if not strange and not is_source:
-        return None
-    return strange[0] if strange else "sources of assignments"
+    return next((path.name for path in sorted(target.iterdir())), None)
