@@ -15,6 +15,7 @@ import numpy as np
 from ..worker.layouts import LAYOUTS
 from .cost import agree
 from .failures import GraderFault
+from .situations import rows_said
 from .specs import Spec
 from .tolerance import Tolerance
 from .trial import Trial
@@ -81,10 +82,11 @@ def require_sizes(trial: Trial, subject: Subject) -> None:
     """
     for n in subject.sizes:
         args = subject.make(trial, n)
-        got = trial.call(subject.function, *args, returns=subject.returns(n))
-        if subject.has_right:
-            what = f"{subject.function} at size {n}"
-            _require_equal(trial, subject, got, subject.answer(trial, args), what)
+        with trial.situation(rows_said(n)):
+            got = trial.call(subject.function, *args, returns=subject.returns(n))
+            if subject.has_right:
+                what = f"{subject.function} at size {n}"
+                _require_equal(trial, subject, got, subject.answer(trial, args), what)
 
 
 def left_unchanged(trial: Trial, subject: Subject, n: int = 5) -> None:

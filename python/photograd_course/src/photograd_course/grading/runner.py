@@ -13,6 +13,7 @@ from .failures import (
     CheckFailed,
     GraderFault,
     MachineTooBusy,
+    NotFinite,
     StudentFailure,
     TooExpensive,
     WrongForm,
@@ -118,7 +119,7 @@ class _Judge:
 
     def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
         culprits = [name for name in check.needs if name in failed]
-        verdict = self._blamed(check, setting, {})
+        verdict = self._blamed(check, setting, {}, failed)
         if verdict.status is not Status.FAILED or not culprits:
             return verdict
         if setting.reference is None:
@@ -130,25 +131,30 @@ class _Judge:
         substitutes = {
             f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
         }
-        second = self._blamed(check, setting, substitutes)
+        second = self._blamed(check, setting, substitutes, failed)
         if second.status is Status.PASSED:
             second.text = f"with the reference's {', '.join(culprits)}"
             return second
         return verdict
 
     def _blamed(
-        self, check: Check, setting: Setting, substitutes: Mapping[str, Callable[..., Any]]
+        self,
+        check: Check,
+        setting: Setting,
+        substitutes: Mapping[str, Callable[..., Any]],
+        failed: Mapping[str, str],
     ) -> _Verdict:
         """The verdict; where the body broke, after asking whose doing that was."""
         try:
-            return _run(check, setting, lambda: self.open_student(substitutes))
+            advice = _general_advice(check, failed)
+            return _run(check, setting, lambda: self.open_student(substitutes), advice)
         except _BodyBroke as broke:
             if self.open_control is None or not self._control_passes(check, setting):
                 return _ours(broke.error)
             # Its text is for staff: `for_student` shows it for public checks only.
             said = {"exception": f"{type(broke.error).__name__}: {broke.error}"}
             text = "the values that came back, or were asked for, cannot be judged"
-            return _Verdict(Status.FAILED, "output", text, check.hint, said)
+            return _Verdict(Status.FAILED, "output", text, details=said)
 
     def _control_passes(self, check: Check, setting: Setting) -> bool:
         assert self.open_control is not None
@@ -166,8 +172,14 @@ class _BodyBroke(Exception):
         self.error = error
 
 
-def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
-    """What comes of one run.
+def _general_advice(check: Check, failed: Mapping[str, str]) -> str:
+    """What to read where nothing better is known: a check that has failed before, or the hint."""
+    about = [failed[name] for name in (*check.needs, *check.calls) if name in failed]
+    return f"{about[0]} fails as well: begin there" if about else check.hint
+
+
+def _run(check: Check, setting: Setting, open_one: OpenControl, general: str = "") -> _Verdict:
+    """What comes of one run; `general` is said where no better hint is known.
 
     Raises:
         _BodyBroke: nothing; it has to be found out whose doing that was.
@@ -186,17 +198,11 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
             raise GraderFault(f"{check.id}: passed without comparing anything")
         verdict = _Verdict(Status.PASSED)
     except CheckFailed as failure:
-        hint = find_hint(setting.hints, setting.salt, check.id, failure)
-        advice = str(failure.details.pop("advice", ""))
-        reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
-        general = "" if isinstance(failure, WrongForm) else check.hint
-        verdict = _Verdict(Status.FAILED, reason, failure.text, hint or advice or general)
-        verdict.details.update(failure.details)
-        verdict.arrays = failure.arrays
-        if failure.fingerprint is not None:
-            verdict.details["fingerprint"] = failure.fingerprint
+        verdict = _wrong(check, setting, failure, general)
     except StudentFailure as failure:
-        verdict = _Verdict(Status.FAILED, failure.reason, failure.text)
+        verdict = _Verdict(Status.FAILED, failure.reason, _with(failure.text, failure.given))
+        if failure.given:
+            verdict.details["given"] = failure.given
         if failure.line is not None:
             verdict.details["line"] = list(failure.line)
         if failure.private and check.visibility == "public":
@@ -212,6 +218,27 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
     if trial is not None and trial.margins:
         verdict.details["margin"] = max(trial.margins)
     return verdict
+
+
+def _wrong(check: Check, setting: Setting, failure: CheckFailed, general: str) -> _Verdict:
+    """The verdict on a wrong answer, with the hint that was seen to fit, or advice."""
+    advice = str(failure.details.pop("advice", "")) or general
+    explained = failure.details.pop("explained", False)
+    if explained or isinstance(failure, (NotFinite, WrongForm)):
+        advice = ""
+    hint = find_hint(setting.hints, setting.salt, check.id, failure) or advice
+    given = str(failure.details.get("given", ""))
+    reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
+    verdict = _Verdict(Status.FAILED, reason, _with(failure.text, given), hint)
+    verdict.details.update({k: v for k, v in failure.details.items() if v != ""})
+    verdict.arrays = failure.arrays
+    if failure.fingerprint is not None:
+        verdict.details["fingerprint"] = failure.fingerprint
+    return verdict
+
+
+def _with(text: str, given: str) -> str:
+    return f"{text} ({given})" if given else text
 
 
 def _require_written(check: Check, student: Student) -> None:

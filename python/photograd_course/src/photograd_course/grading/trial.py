@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,7 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..worker.codec import encode, round_trip
 from ..worker.layouts import without_functions
-from .failures import CheckFailed, GraderFault, StudentFailure, WrongForm
+from .failures import CheckFailed, GraderFault, NotFinite, StudentFailure, WrongForm
+from .relations import find_relation
+from .situations import lengths_of, situation_of
 from .specs import Spec
 from .tolerance import Tolerance
 
@@ -96,6 +99,8 @@ class Trial:
         self._verdict: CheckFailed | None = None
         self._module = module
         self._reference = reference
+        self._situation = ""  # of all calls and comparisons, where the check has said it
+        self._args: Sequence[Any] = ()  # of the last call
 
     @property
     def reference(self) -> Any:
@@ -127,8 +132,31 @@ class Trial:
                 what the submission makes of such an exception does not matter.
         """
         value = self._answer(function, args)
-        returns.require(value, function.rpartition(".")[2])
+        with self._said(args):
+            returns.require(value, function.rpartition(".")[2])
         return value
+
+    @contextmanager
+    def situation(self, said: str) -> Iterator[None]:
+        """Failures in this block say for which class of arguments, such as "for one row"."""
+        before, self._situation = self._situation, said
+        try:
+            with self._said():
+                yield
+        finally:
+            self._situation = before
+
+    @contextmanager
+    def _said(self, args: Sequence[Any] = ()) -> Iterator[None]:
+        """A failure tells for which class of arguments; the first that says so is right."""
+        try:
+            yield
+        except CheckFailed as failure:
+            failure.details.setdefault("given", self._situation or situation_of(args))
+            raise
+        except StudentFailure as failure:
+            failure.given = failure.given or self._situation or situation_of(args)
+            raise
 
     def look(self, function: str, *args: Any, returns: Spec, layout: str = "plain") -> Any:
         """Like `call`, and require that the arguments stay as they were, to the last bit.
@@ -142,7 +170,8 @@ class Trial:
         """
         name = function.rpartition(".")[2]
         value, after = self._answer(function, args, layout)
-        returns.require(value, name)
+        with self._said(args):
+            returns.require(value, name)
         before = round_trip(without_functions(list(args)))
         self.asked += 1
         if encode("args", 0, after) != encode("args", 0, before):
@@ -152,13 +181,15 @@ class Trial:
     def _answer(self, function: str, args: Sequence[Any], layout: str | None = None) -> Any:
         """What the submission returns, unless a function among ``args`` has given the verdict."""
         where = function if "." in function else f"{self._module}.{function}"
+        self._args = args
         try:
             given = [self._watched(arg) for arg in args]
             seconds = self.check.seconds
-            if layout is None:
-                value = self._student.call(where, given, seconds=seconds)
-            else:
-                value = self._student.look(where, given, seconds=seconds, layout=layout)
+            with self._said(args):
+                if layout is None:
+                    value = self._student.call(where, given, seconds=seconds)
+                else:
+                    value = self._student.look(where, given, seconds=seconds, layout=layout)
         except StudentFailure:
             if self._verdict is not None:
                 raise self._verdict from None
@@ -226,18 +257,26 @@ class Trial:
         self.margins.append(error / bound.relative)
         if error <= bound.relative:  # written so that NaN fails
             return
-        worst = np.unravel_index(int(np.argmax(np.nan_to_num(difference, nan=np.inf))), right.shape)
+        if not np.isfinite(answer).all():
+            raise _not_finite(what, answer, right)
+        worst = np.unravel_index(int(np.argmax(difference)), right.shape)
+        relation = find_relation(answer, right, bound.relative, lengths_of(self._args))
+        public = self.check.visibility == "public"
+        seen = (relation.text if public else relation.kind) if relation else ""
         raise CheckFailed(
-            self._sentence(what, error, bound, answer, right, worst, reveal),
+            self._sentence(what, error, bound, answer, right, worst, reveal)
+            + (f". {seen[0].upper()}{seen[1:]}" if seen else ""),
             {
                 "error": error,
                 "tolerance": bound.relative,
                 "worst_index": [int(i) for i in worst],
                 "expected_sign": int(np.sign(right[worst])),
                 "expected_scale": _power_of_ten(right[worst]),
+                "relation": relation.kind if relation else "",
+                "explained": relation is not None and relation.explains,
                 "advice": hint,
             },
-            fingerprint(what, answer),
+            fingerprint(what, answer, error),
             (answer, right) if right.ndim else None,
         )
 
@@ -292,15 +331,32 @@ def _told_apart(a: float, b: float) -> tuple[str, str]:
     return texts
 
 
-def fingerprint(what: str, answer: ArrayLike) -> str:
-    """A short hash of a wrong answer, equal for answers that agree to eight digits."""
+def _not_finite(what: str, answer: Any, right: Any) -> NotFinite:
+    bad = ~np.isfinite(answer)
+    text = f"{what}: expected a finite number, got {answer}"
+    if right.ndim:
+        first = tuple(int(i) for i in np.argwhere(bad)[0])
+        text = f"{what}: {bad.sum()} of {bad.size} values are not finite, the first at {first}"
+    return NotFinite(text, arrays=(answer, right) if right.ndim else None)
+
+
+def fingerprint(what: str, answer: ArrayLike, error: float = 0.0) -> str:
+    """A short hash of a wrong answer, equal for answers that agree to eight digits.
+
+    Args:
+        what: the quantity.
+        answer: its value.
+        error: of the answer. Two digits of it tell apart what was expected, where that is made of
+            other values of the same submission, as finite differences are: the same derivative is
+            a half too large for one loss and a third for another.
+    """
     values = np.asarray(answer, np.float64)
     finite = np.abs(values[np.isfinite(values)])
     top = float(finite.max()) if finite.size else 0.0
     step = top * 10.0**-FINGERPRINT_DIGITS
     rounded = (np.rint(values / step) if step > 0 else values) + 0.0  # no minus zero
     size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
-    data = f"{what}|{values.shape}|{size}|".encode() + rounded.astype("<f8").tobytes()
+    data = f"{what}|{values.shape}|{size}|{error:.1e}|".encode() + rounded.astype("<f8").tobytes()
     return hashlib.sha256(data).hexdigest()[:24]
 
 

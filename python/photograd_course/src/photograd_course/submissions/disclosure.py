@@ -53,6 +53,12 @@ def magnitude(value: float) -> float:
 
 
 def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
+    """The sentence; the classes of arguments are the grader's words, and few."""
+    text, given = _without_class(outcome, details), outcome.details.get("given")
+    return f"{text} ({given})" if given and given not in text else text
+
+
+def _without_class(outcome: Outcome, details: dict[str, Any]) -> str:
     if outcome.reason in ("wrong", "cost"):
         return _wrong(outcome, details)
     if outcome.reason in _HARMLESS:
@@ -64,6 +70,8 @@ def _wrong(outcome: Outcome, details: dict[str, Any]) -> str:
     if "error" in details and "tolerance" in details:
         what = outcome.text.split(": relative error")[0]
         size = "1 or more" if details["error"] >= 1 else f"about {details['error']:.0e}"
-        return f"{what}: relative error {size}, allowed {details['tolerance']:.0e}"
+        relation = outcome.details.get("relation")  # one of few sentences without a number
+        seen = f"; {relation}" if relation else ""
+        return f"{what}: relative error {size}, allowed {details['tolerance']:.0e}{seen}"
     kept = outcome.text.split(", got ")[0].split("; yours")[0]
     return _NUMBER.sub("\N{HORIZONTAL ELLIPSIS}", kept)
