@@ -24,7 +24,7 @@ from .checking import check_here, select
 from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
-from .terminal import print_outcome, print_printed, print_rest, print_summary
+from .terminal import OutcomePrinter, explanation, print_rest, print_summary
 
 
 def run_check_command(
@@ -46,10 +46,12 @@ def run_check_command(
     require_brought(bundle.manifest, files)
     lock_predictions(bundle, folder, console)
 
+    printer = OutcomePrinter(console, bundle.manifest)
+
     def show(outcome: Outcome, printed: str) -> None:
-        print_outcome(outcome, console, bundle.manifest)
+        printer.outcome(outcome)
         if outcome.status is not Status.PASSED or task is not None:
-            print_printed(printed, console)
+            printer.printed(outcome.id, printed)
         remove_picture(outcome, folder.path)
         if pictures and (path := draw_failure(outcome, folder.path)) is not None:
             console.print(f"    picture: {path.name}", soft_wrap=True)
@@ -111,7 +113,15 @@ def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:
         "score": sum(outcome.points for outcome in outcomes),
         "max_score": sum(outcome.max for outcome in outcomes),
         "checks": [
-            {"id": o.id, "status": o.status.value, "points": o.points, "max": o.max, "text": o.text}
+            {
+                "id": o.id,
+                "status": o.status.value,
+                "points": o.points,
+                "max": o.max,
+                "text": o.text,
+                "hint": o.hint,
+                "lines": [] if o.status is Status.PASSED else explanation(o, bundle.manifest),
+            }
             for o in outcomes
         ],
     }

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from ..grading.outcome import Outcome
 from ..printable import printable
-from ..student.terminal import print_outcome
+from ..student.terminal import OutcomePrinter
 from .report import Report
 
 
@@ -27,8 +27,9 @@ def print_report(report: Report, console: Console) -> None:
         _line(console, f"note: {remark}", "yellow")
     for name in report.ignored:
         _line(console, f"ignored: {name}")
+    printer = OutcomePrinter(console)
     for outcome in report.checks:
-        print_outcome(safe(outcome), console)
+        printer.outcome(safe(outcome))
     for question in report.questions:
         said = f" ({question.text})" if question.text else ""
         points = f"{question.points:g} of {question.max:g}"
