@@ -20,7 +20,13 @@ from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.next_steps import next_steps
-from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
+from photograd_course.student.pictures import (
+    _planes,
+    draw_failure,
+    magnified,
+    slice_name,
+    worst_index,
+)
 from photograd_course.student.session import ask, earlier_functions, require_brought
 from photograd_course.student.terminal import said_of
 from rich.console import Console
@@ -131,6 +137,37 @@ def test_the_slice_with_the_worst_entry_is_drawn_named_and_marked() -> None:
     assert slice_name((1, 3, 4, 3), (0, 2, 1, 2)) == " (slice [0, :, :, 2])"
     got[1, 0, 0, 0] = np.nan
     assert worst_index(got, right) == (1, 0, 0, 0)
+
+
+def test_a_small_difference_is_seen_on_a_scale_of_its_own() -> None:
+    right = np.random.default_rng(1).uniform(-1.0, 1.0, (6, 20))
+    got = right.copy()
+    got[2, 3] += 1e-5
+    figure = _planes(got, right)
+    values, _, difference = (axes.get_images()[0] for axes in figure.axes[:2] + figure.axes[3:4])
+    assert values.get_clim() == (-1.0, 1.0)
+    low, high = difference.get_clim()
+    assert 1e-5 <= high == -low < 2e-5
+    assert figure.axes[3].get_title() == f"difference, magnified × {1 / high:,.0f}"
+    assert magnified(1.0, 1.5) == "difference"
+    got[0, 0] = np.nan
+    assert _planes(got, right).axes[3].get_images()[0].get_clim() == (low, high)
+
+
+@pytest.mark.parametrize("shape", [(6, 30), (40, 4), (20, 20), (2, 60), (60, 2)])
+def test_no_label_is_cut_off(shape: tuple[int, int]) -> None:
+    right = np.random.default_rng(1).normal(size=shape)
+    figure = _planes(1e3 * right, right)
+    figure.suptitle("a title\nof two lines")
+    figure.draw_without_rendering()
+    inside = figure.bbox
+    for axes in figure.axes:
+        box = axes.get_tightbbox()
+        assert box is not None
+        assert inside.x0 <= box.x0
+        assert box.x1 <= inside.x1
+        assert inside.y0 <= box.y0
+        assert box.y1 <= inside.y1
 
 
 def test_after_a_submission_the_next_assignment_is_named() -> None:
