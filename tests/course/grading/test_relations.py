@@ -81,7 +81,16 @@ def test_zeros_are_ignored_and_finite_differences_are_good_enough() -> None:
     assert "are 2 times" in said(2 * right, right)
     noise = 1e-8 * np.random.default_rng(2).normal(size=RIGHT.shape)
     assert "are 1/2 times" in said(0.5 * RIGHT, RIGHT + noise, 1e-6)
-    assert said(0.5 * RIGHT, RIGHT + 1e3 * noise, 1e-2) == ""
+    assert said(0.5 * RIGHT, RIGHT + 1e3 * noise, 1e-6) == ""
+
+
+@pytest.mark.parametrize("factor", [-1.0, 2.0, 0.5, 3.0, PI, -1 / (4 * PI)])
+def test_a_rough_check_tells_plain_factors_as_far_as_it_can(factor: float) -> None:
+    noise = 1 + 1e-3 * np.random.default_rng(2).normal(size=RIGHT.shape)
+    text = said(factor * RIGHT * noise, RIGHT, 2e-3)
+    assert text.startswith(f"all of yours are {name_of(factor)} times what is expected, as far as")
+    assert said(factor * RIGHT * noise, RIGHT, 1e-4) == ""
+    assert said(1.1 * factor * RIGHT * noise, RIGHT, 2e-3) == ""
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

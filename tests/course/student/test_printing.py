@@ -196,3 +196,13 @@ def test_json_has_what_the_terminal_says(
     assert any("-1 times what is expected (your sign is reversed)" in line for line in lines)
     assert all(line in captured.err for line in lines)
     assert all(each["text"] in each["lines"] for each in checks if each["status"] == "failed")
+
+
+def test_of_values_that_are_not_finite_the_warning_is_the_hint(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = "zero = 0.0 * picture; return zero / zero"
+    said = told(work_with(tmp_path, body), capsys)
+    assert "values are not finite, the first at (0, 0)" in said
+    assert "RuntimeWarning: invalid value encountered in divide" in said
+    assert "hint:" not in said

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,10 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 Indices = np.ndarray[Any, np.dtype[np.intp]]
 # An answer is looked at as closely as its check does, within these bounds.
 FINEST, COARSEST = 1e-13, 1e-6
-TELLING = 3  # so many values that differ make a relation more than a coincidence
+TELLING = 3  # so many values that differ make a relation more than a coincidence,
+ENOUGH = 2  # and so many a factor that has a name
+ROUGHEST = 1e-2  # tolerance with which a plain factor is told apart from others
+PLAIN = (*(f for n in (1, 2, 4) for f in (n, 1 / n, n * np.pi, 1 / (n * np.pi))), 3, 1 / 3)
 MOST_SLICES = 4  # that are named one by one
 
 
@@ -55,10 +59,10 @@ class _Pair:
         return bool((np.abs(a - b) <= COARSEST * np.abs(b) + slack).all())
 
     @property
-    def telling(self) -> bool:
-        """Whether the expected values are various enough to rule out coincidences."""
+    def various(self) -> int:
+        """How many different magnitudes are expected, 0 apart."""
         sizes = np.abs(self.right[self.right != 0])
-        return bool(np.unique(np.round(sizes / sizes.max(initial=1e-300), 6)).size >= TELLING)
+        return int(np.unique(np.round(sizes / sizes.max(initial=1e-300), 6)).size)
 
 
 def find_relation(
@@ -85,9 +89,7 @@ def find_relation(
     if found is None and right.size >= TELLING and np.ptp(got) == 0.0:
         text = "all of yours are equal, the expected ones are not"
         found = Relation(text, text, explains=False)
-    if found is None:
-        return None
-    return replace(found, explains=found.explains and pair.telling)
+    return found or _rough_ratio(pair, tolerance)
 
 
 def _of(pair: _Pair, said: str) -> str:
@@ -103,13 +105,29 @@ def _ratio(pair: _Pair) -> Relation | None:
         return None
     named = name_of(factor)
     plain = "." not in named and "e" not in named
-    if not pair.telling and not plain:
+    if pair.various < TELLING and not plain:
         return None  # any two numbers have a ratio
     times = f"{named} times what is expected{remark_on(factor, pair.lengths)}"
     kind = "wrong by one constant factor" + (", which is negative" if factor < 0 else "")
     if named == "-1":
         kind = "of the wrong sign"
-    return Relation(_of(pair, times), _of(pair, kind), explains=plain)
+    return Relation(_of(pair, times), _of(pair, kind), explains=plain and pair.various >= ENOUGH)
+
+
+def _rough_ratio(pair: _Pair, tolerance: float) -> Relation | None:
+    """A plain factor, as far as a check tells that allows more than rounding."""
+    if not COARSEST < tolerance <= ROUGHEST:
+        return None
+    got, right = pair.got, pair.right
+    for size, sign in product(PLAIN, (1, -1)):
+        factor = sign * size
+        error = float(np.linalg.norm(got - factor * right))
+        if factor != 1 and error <= tolerance * size * float(np.linalg.norm(right)):
+            named = f"{name_of(factor)} times what is expected"
+            near = f"{named}, as far as this check can tell{remark_on(factor, ())}"
+            kind = "wrong by one constant factor" if sign > 0 else "of the wrong sign"
+            return Relation(_of(pair, near), _of(pair, kind), explains=pair.various >= ENOUGH)
+    return None
 
 
 def _order(pair: _Pair) -> Relation | None:
@@ -120,7 +138,7 @@ def _order(pair: _Pair) -> Relation | None:
 def _values(pair: _Pair) -> Relation | None:
     """One function of each entry."""
     got, right = pair.got, pair.right
-    if not pair.telling:
+    if pair.various < TELLING:
         return None
     shift = float(np.mean(got - right))
     if (
@@ -207,8 +225,7 @@ def _inside(pair: _Pair, axis: int, indices: Indices) -> Relation | None:
         return None
     if not part.got.any():
         return Relation("all of it is 0", "all of it is 0", explains=False)
-    found = _ratio(part) or _values(part)
-    return found and replace(found, explains=found.explains and part.telling)
+    return _ratio(part) or _values(part)
 
 
 def place(indices: Indices, axis: int, shape: tuple[int, ...]) -> str:

@@ -20,7 +20,7 @@ from .tolerance import Tolerance
 
 # Wrong answers that agree to so many digits have the same cause.
 FINGERPRINT_DIGITS = 8
-
+PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
 
@@ -175,7 +175,9 @@ class Trial:
         before = round_trip(without_functions(list(args)))
         self.asked += 1
         if encode("args", 0, after) != encode("args", 0, before):
-            raise CheckFailed(f"{name}: changes an argument, which belongs to its caller")
+            which = _changed(before, after)
+            text = f"{name}: changes its {which} argument, which belongs to the caller"
+            raise CheckFailed(text, {"explained": True})
         return value
 
     def _answer(self, function: str, args: Sequence[Any], layout: str | None = None) -> Any:
@@ -320,6 +322,15 @@ class Trial:
             alike = "sign and order of magnitude" if error < 1 else "sign"
             return f"{head}; {mine}, of the right {alike}, but wrong"
         return f"{head}; {mine}, expected {expected}"
+
+
+def _changed(before: Any, after: Any) -> str:
+    """Which of the arguments is not as it was, in words that hidden checks may say."""
+    if isinstance(after, list) and len(after) == len(before):
+        for place, mine, theirs in zip(PLACES, before, after, strict=False):
+            if encode("args", 0, [mine]) != encode("args", 0, [theirs]):
+                return place
+    return "given"
 
 
 def _told_apart(a: float, b: float) -> tuple[str, str]:
