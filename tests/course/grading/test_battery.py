@@ -130,6 +130,25 @@ def test_a_mistake_is_caught_by_its_class(
     assert classes <= caught(open_trial, WRONG[mistake])
 
 
+@pytest.mark.parametrize(
+    ("body", "given"),
+    [
+        ("return a * w[0]", ""),
+        ("return np.squeeze(a * w[:, None])", "for one row"),
+        ("return (a + (len(a) == 1)) * w[:, None]", "for one row"),
+        ("return 1.0 / len(a) * len(a) * a * w[:, None]", "for no rows"),
+        ("return (a + (len(a) > 100)) * w[:, None]", "for many rows"),
+    ],
+)
+def test_a_failure_says_for_which_class_of_sizes(open_trial: Open, body: str, given: str) -> None:
+    subject = replace(BLEND, sizes=(7, 1, 0, 200))
+    with pytest.raises((CheckFailed, StudentFailure)) as caught:
+        require_sizes(open_trial(HEAD + f"    {body}\n"), subject)
+    failure = caught.value
+    said = failure.given if isinstance(failure, StudentFailure) else failure.details["given"]
+    assert said == given
+
+
 def test_rows_that_are_all_equal_prove_nothing(open_trial: Open) -> None:
     same = replace(BLEND, make=lambda _, n: (np.ones((n, 3)), np.ones(n)))
     with pytest.raises(GraderFault, match="are equal"):

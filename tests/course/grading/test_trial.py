@@ -18,8 +18,8 @@ from photograd_course.grading import (
     check,
 )
 from photograd_course.grading.failures import NotFinite, StudentFailure
+from photograd_course.grading.hints import fingerprint
 from photograd_course.grading.local import LocalStudent
-from photograd_course.grading.trial import fingerprint
 
 TIGHT = Tolerance(1e-6, "for these tests")
 CODE = "def f(x):\n    return x + 1.0\n\ndef g(x):\n    raise ValueError('no')\n"

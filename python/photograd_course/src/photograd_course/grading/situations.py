@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-MANY = 1000  # rows, from here on
+MANY = 100  # rows, from here on
 LARGE = 1e6  # magnitudes, from here on
 
 

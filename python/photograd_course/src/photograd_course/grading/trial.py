@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol
@@ -12,15 +11,13 @@ from numpy.typing import ArrayLike
 
 from ..worker.codec import encode, round_trip
 from ..worker.layouts import without_functions
-from .failures import CheckFailed, GraderFault, NotFinite, StudentFailure, WrongForm
+from .failures import CheckFailed, GraderFault, StudentFailure, WrongForm
+from .hints import fingerprint
 from .relations import find_relation
 from .situations import lengths_of, situation_of
 from .specs import Spec
 from .tolerance import Tolerance
-
-# Wrong answers that agree to so many digits have the same cause.
-FINGERPRINT_DIGITS = 8
-PLACES = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+from .wording import changed_argument, not_finite, power_of_ten, worst_entry
 
 Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
 
@@ -175,7 +172,7 @@ class Trial:
         before = round_trip(without_functions(list(args)))
         self.asked += 1
         if encode("args", 0, after) != encode("args", 0, before):
-            which = _changed(before, after)
+            which = changed_argument(before, after)
             text = f"{name}: changes its {which} argument, which belongs to the caller"
             raise CheckFailed(text, {"explained": True})
         return value
@@ -260,20 +257,21 @@ class Trial:
         if error <= bound.relative:  # written so that NaN fails
             return
         if not np.isfinite(answer).all():
-            raise _not_finite(what, answer, right)
-        worst = np.unravel_index(int(np.argmax(difference)), right.shape)
-        relation = find_relation(answer, right, bound.relative, lengths_of(self._args))
+            raise not_finite(what, answer, right)
         public = self.check.visibility == "public"
+        relation = find_relation(answer, right, bound.relative, lengths_of(self._args))
         seen = (relation.text if public else relation.kind) if relation else ""
+        head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
+        worst = np.unravel_index(int(np.argmax(difference)), right.shape)
+        said = worst_entry(answer, right, worst, error, reveal=reveal and public)
         raise CheckFailed(
-            self._sentence(what, error, bound, answer, right, worst, reveal)
-            + (f". {seen[0].upper()}{seen[1:]}" if seen else ""),
+            f"{head}; {said}" + (f". {seen[0].upper()}{seen[1:]}" if seen else ""),
             {
                 "error": error,
                 "tolerance": bound.relative,
                 "worst_index": [int(i) for i in worst],
                 "expected_sign": int(np.sign(right[worst])),
-                "expected_scale": _power_of_ten(right[worst]),
+                "expected_scale": power_of_ten(right[worst]),
                 "relation": relation.kind if relation else "",
                 "explained": relation is not None and relation.explains,
                 "advice": hint,
@@ -300,84 +298,3 @@ class Trial:
                 raise
             raise CheckFailed(f"{function}: expected {error}, got another exception") from failure
         raise CheckFailed(f"{function}: expected {error}, but it returned")
-
-    def _sentence(
-        self,
-        what: str,
-        error: float,
-        bound: Tolerance,
-        got: Any,
-        right: Any,
-        worst: tuple[Any, ...],
-        reveal: bool,
-    ) -> str:
-        at = f" at index {tuple(int(i) for i in worst)}" if right.ndim else ""
-        head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
-        told = _told_apart(float(got[worst]) + 0.0, float(right[worst]) + 0.0)  # no minus zero
-        if reveal and self.check.visibility == "public":
-            return f"{head}; yours{at} is {told[0]}, expected {told[1]}"
-        mine = f"yours{at} is {float(got[worst]) + 0.0:.6g}"
-        expected = _sign_and_size(float(right[worst]))
-        if expected == _sign_and_size(float(got[worst])):
-            alike = "sign and order of magnitude" if error < 1 else "sign"
-            return f"{head}; {mine}, of the right {alike}, but wrong"
-        return f"{head}; {mine}, expected {expected}"
-
-
-def _changed(before: Any, after: Any) -> str:
-    """Which of the arguments is not as it was, in words that hidden checks may say."""
-    if isinstance(after, list) and len(after) == len(before):
-        for place, mine, theirs in zip(PLACES, before, after, strict=False):
-            if encode("args", 0, [mine]) != encode("args", 0, [theirs]):
-                return place
-    return "given"
-
-
-def _told_apart(a: float, b: float) -> tuple[str, str]:
-    """Two numbers with six digits, or with as many more as show that they differ."""
-    for digits in range(6, 18):
-        texts = f"{a:.{digits}g}", f"{b:.{digits}g}"
-        if texts[0] != texts[1]:
-            break
-    return texts
-
-
-def _not_finite(what: str, answer: Any, right: Any) -> NotFinite:
-    bad = ~np.isfinite(answer)
-    text = f"{what}: expected a finite number, got {answer}"
-    if right.ndim:
-        first = tuple(int(i) for i in np.argwhere(bad)[0])
-        text = f"{what}: {bad.sum()} of {bad.size} values are not finite, the first at {first}"
-    return NotFinite(text, arrays=(answer, right) if right.ndim else None)
-
-
-def fingerprint(what: str, answer: ArrayLike, error: float = 0.0) -> str:
-    """A short hash of a wrong answer, equal for answers that agree to eight digits.
-
-    Args:
-        what: the quantity.
-        answer: its value.
-        error: of the answer. Two digits of it tell apart what was expected, where that is made of
-            other values of the same submission, as finite differences are: the same derivative is
-            a half too large for one loss and a third for another.
-    """
-    values = np.asarray(answer, np.float64)
-    finite = np.abs(values[np.isfinite(values)])
-    top = float(finite.max()) if finite.size else 0.0
-    step = top * 10.0**-FINGERPRINT_DIGITS
-    rounded = (np.rint(values / step) if step > 0 else values) + 0.0  # no minus zero
-    size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
-    data = f"{what}|{values.shape}|{size}|{error:.1e}|".encode() + rounded.astype("<f8").tobytes()
-    return hashlib.sha256(data).hexdigest()[:24]
-
-
-def _sign_and_size(value: float) -> str:
-    """As much as may be said of a hidden value."""
-    sign = {1.0: "positive", -1.0: "negative"}.get(float(np.sign(value)), "zero")
-    return f"something {sign}, of the order {_power_of_ten(value)}" if value else sign
-
-
-def _power_of_ten(value: float) -> str:
-    if not value or not np.isfinite(value):
-        return "0"
-    return f"1e{int(np.floor(np.log10(abs(value)))):+03d}"
