@@ -131,7 +131,7 @@ def test_a_mistake_is_caught_by_its_class(
 
 
 @pytest.mark.parametrize(
-    ("body", "given"),
+    ("body", "case"),
     [
         ("return a * w[0]", ""),
         ("return np.squeeze(a * w[:, None])", "for one row"),
@@ -140,13 +140,13 @@ def test_a_mistake_is_caught_by_its_class(
         ("return (a + (len(a) > 100)) * w[:, None]", "for many rows"),
     ],
 )
-def test_a_failure_says_for_which_class_of_sizes(open_trial: Open, body: str, given: str) -> None:
+def test_a_failure_says_for_which_class_of_sizes(open_trial: Open, body: str, case: str) -> None:
     subject = replace(BLEND, sizes=(7, 1, 0, 200))
     with pytest.raises((CheckFailed, StudentFailure)) as caught:
         require_sizes(open_trial(HEAD + f"    {body}\n"), subject)
     failure = caught.value
-    said = failure.given if isinstance(failure, StudentFailure) else failure.details["given"]
-    assert said == given
+    said = failure.case if isinstance(failure, StudentFailure) else failure.details["case"]
+    assert said == case
 
 
 def test_rows_that_are_all_equal_prove_nothing(open_trial: Open) -> None:

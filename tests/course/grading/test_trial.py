@@ -188,13 +188,13 @@ def test_a_failure_names_the_argument_that_was_changed_and_the_class_of_argument
     assert caught.value.details["explained"] is True
     with pytest.raises(StudentFailure) as raised:
         t.call("g", np.zeros((0, 2)), returns=Number())
-    assert raised.value.given == "for no rows"
+    assert raised.value.case == "for no rows"
     with t.situation("for one row"), pytest.raises(CheckFailed) as failed:
         t.close("y", 1.0, 2.0, TIGHT)
-    assert "given" not in failed.value.details  # the block itself adds it
+    assert "case" not in failed.value.details  # the block itself adds it
     with pytest.raises(CheckFailed) as failed, t.situation("for one row"):
         t.close("y", 1.0, 2.0, TIGHT)
-    assert failed.value.details["given"] == "for one row"
+    assert failed.value.details["case"] == "for one row"
 
 
 def test_one_derivative_of_two_losses_has_two_fingerprints() -> None:

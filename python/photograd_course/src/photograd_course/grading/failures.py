@@ -15,7 +15,7 @@ class CheckFailed(Exception):
     Attributes:
         text: one sentence for the student; never contains a hidden value.
         details: for the report: error, tolerance, worst index, expected sign and scale, how the
-            answer relates to the right one ("relation"), the class of the arguments ("given"). The
+            answer relates to the right one ("relation"), the class of the arguments ("case"). The
             runner takes out "advice" (of the comparison: what is often wrong) and "explained" (the
             text leaves nothing open, so that advice could only lead away).
         fingerprint: of the wrong answer, for the table of known mistakes.
@@ -54,14 +54,14 @@ class StudentFailure(Exception):
         text: one sentence for the student.
         private: what may hold input of a check (an exception's text); shown for public checks only.
         line: (file, line) in the submission.
-        given: the class of the arguments, such as "for no rows"; empty for everyday ones.
+        case: the class of the arguments, such as "for no rows"; empty for everyday ones.
     """
 
     reason: str
     text: str
     private: str = ""
     line: tuple[str, int] | None = None
-    given: str = ""
+    case: str = ""
 
     def __str__(self) -> str:
         return self.text

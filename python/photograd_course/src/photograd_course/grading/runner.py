@@ -119,7 +119,8 @@ class _Judge:
 
     def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
         culprits = [name for name in check.needs if name in failed]
-        verdict = self._blamed(check, setting, {}, failed)
+        check = replace(check, hint=_general_advice(check, failed))
+        verdict = self._blamed(check, setting, {})
         if verdict.status is not Status.FAILED or not culprits:
             return verdict
         if setting.reference is None:
@@ -131,23 +132,18 @@ class _Judge:
         substitutes = {
             f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
         }
-        second = self._blamed(check, setting, substitutes, failed)
+        second = self._blamed(check, setting, substitutes)
         if second.status is Status.PASSED:
             second.text = f"with the reference's {', '.join(culprits)}"
             return second
         return verdict
 
     def _blamed(
-        self,
-        check: Check,
-        setting: Setting,
-        substitutes: Mapping[str, Callable[..., Any]],
-        failed: Mapping[str, str],
+        self, check: Check, setting: Setting, substitutes: Mapping[str, Callable[..., Any]]
     ) -> _Verdict:
         """The verdict; where the body broke, after asking whose doing that was."""
         try:
-            advice = _general_advice(check, failed)
-            return _run(check, setting, lambda: self.open_student(substitutes), advice)
+            return _run(check, setting, lambda: self.open_student(substitutes))
         except _BodyBroke as broke:
             if self.open_control is None or not self._control_passes(check, setting):
                 return _ours(broke.error)
@@ -178,8 +174,8 @@ def _general_advice(check: Check, failed: Mapping[str, str]) -> str:
     return f"{about[0]} fails as well: begin there" if about else check.hint
 
 
-def _run(check: Check, setting: Setting, open_one: OpenControl, general: str = "") -> _Verdict:
-    """What comes of one run; `general` is said where no better hint is known.
+def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
+    """What comes of one run.
 
     Raises:
         _BodyBroke: nothing; it has to be found out whose doing that was.
@@ -198,11 +194,11 @@ def _run(check: Check, setting: Setting, open_one: OpenControl, general: str = "
             raise GraderFault(f"{check.id}: passed without comparing anything")
         verdict = _Verdict(Status.PASSED)
     except CheckFailed as failure:
-        verdict = _wrong(check, setting, failure, general)
+        verdict = _wrong(check, setting, failure)
     except StudentFailure as failure:
-        verdict = _Verdict(Status.FAILED, failure.reason, _with(failure.text, failure.given))
-        if failure.given:
-            verdict.details["given"] = failure.given
+        verdict = _Verdict(Status.FAILED, failure.reason, _with(failure.text, failure.case))
+        if failure.case:
+            verdict.details["case"] = failure.case
         if failure.line is not None:
             verdict.details["line"] = list(failure.line)
         if failure.private and check.visibility == "public":
@@ -220,16 +216,16 @@ def _run(check: Check, setting: Setting, open_one: OpenControl, general: str = "
     return verdict
 
 
-def _wrong(check: Check, setting: Setting, failure: CheckFailed, general: str) -> _Verdict:
+def _wrong(check: Check, setting: Setting, failure: CheckFailed) -> _Verdict:
     """The verdict on a wrong answer, with the hint that was seen to fit, or advice."""
-    advice = str(failure.details.pop("advice", "")) or general
+    advice = str(failure.details.pop("advice", "")) or check.hint
     explained = failure.details.pop("explained", False)
     if explained or isinstance(failure, (NotFinite, WrongForm)):
         advice = ""
     hint = find_hint(setting.hints, setting.salt, check.id, failure) or advice
-    given = str(failure.details.get("given", ""))
+    case = str(failure.details.get("case", ""))
     reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
-    verdict = _Verdict(Status.FAILED, reason, _with(failure.text, given), hint)
+    verdict = _Verdict(Status.FAILED, reason, _with(failure.text, case), hint)
     verdict.details.update({k: v for k, v in failure.details.items() if v != ""})
     verdict.arrays = failure.arrays
     if failure.fingerprint is not None:
@@ -237,8 +233,8 @@ def _wrong(check: Check, setting: Setting, failure: CheckFailed, general: str) -
     return verdict
 
 
-def _with(text: str, given: str) -> str:
-    return f"{text} ({given})" if given else text
+def _with(text: str, case: str) -> str:
+    return f"{text} ({case})" if case and case not in text else text
 
 
 def _require_written(check: Check, student: Student) -> None:

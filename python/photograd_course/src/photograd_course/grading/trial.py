@@ -149,10 +149,10 @@ class Trial:
         try:
             yield
         except CheckFailed as failure:
-            failure.details.setdefault("given", self._situation or situation_of(args))
+            failure.details.setdefault("case", self._situation or situation_of(args))
             raise
         except StudentFailure as failure:
-            failure.given = failure.given or self._situation or situation_of(args)
+            failure.case = failure.case or self._situation or situation_of(args)
             raise
 
     def look(self, function: str, *args: Any, returns: Spec, layout: str = "plain") -> Any:

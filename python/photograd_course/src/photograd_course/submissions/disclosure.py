@@ -54,8 +54,8 @@ def magnitude(value: float) -> float:
 
 def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
     """The sentence; the classes of arguments are the grader's words, and few."""
-    text, given = _without_class(outcome, details), outcome.details.get("given")
-    return f"{text} ({given})" if given and given not in text else text
+    text, case = _without_class(outcome, details), outcome.details.get("case")
+    return f"{text} ({case})" if case and case not in text else text
 
 
 def _without_class(outcome: Outcome, details: dict[str, Any]) -> str:
