@@ -97,7 +97,7 @@ def the_graph_says_the_same(t):
         np.array([b + 2 * a, a]),
         hint=ENGINE,
     )
-    layers, x, _, g = case(t, (2, 4, 4, 3, 2), 3)
+    layers, x, _, g = case(t, (2, 4, 4, 3), 4)
     by_hand = derivatives(t, layers, x, g)
     by_graph = derivatives(t, layers, x, g, "graph_gradients")
     names = [f"d_{'Wb'[k % 2]}{k // 2}" for k in range(len(layers))]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from photograd_course.grading.ratios import name_of
 from photograd_course.grading.relations import find_relation
-from photograd_course.grading.situations import lengths_of, situation_of
+from photograd_course.grading.situations import lengths_of, rows_said, situation_of
 
 Array = np.ndarray[Any, Any]
 RIGHT = np.random.default_rng(1).normal(size=(5, 3))
@@ -214,7 +214,11 @@ def test_small_entries_are_looked_at() -> None:
 def test_the_class_of_sizes_of_a_call() -> None:
     rows = {n: (np.ones((n, 3)), 0.5) for n in (0, 1, 5, 100)}
     classes = [situation_of(args) for args in rows.values()]
-    assert classes == ["for no rows", "for one row", "", "for many rows"]
+    assert classes == ["for no rows", "for one row", "", ""]  # many are everyday arguments
+    assert [rows_said(n) for n in rows] == ["for no rows", "for one row", "", "for many rows"]
     assert situation_of([np.array([1.0, 2e6]), np.ones((1, 2))]) == "at a large magnitude"
     assert situation_of([[np.array([1.0, np.nan])]]) == "where a value is not finite"
     assert situation_of([3.0, np.ones(1)]) == ""
+    assert (
+        situation_of([{"balls": np.ones((0, 3))}, np.ones((4, 3))]) == ""
+    )  # a scene without balls

@@ -22,17 +22,15 @@ def rows_said(n: int) -> str:
 
 def situation_of(args: Sequence[Any]) -> str:
     """The class of the arguments of a call; nothing where they are of everyday size."""
-    arrays = list(_arrays(args))
-    if any(array.size == 0 for array in arrays):
+    plain = [value for value in args if isinstance(value, np.ndarray) and value.ndim]
+    if any(array.size == 0 for array in plain):  # in a dict, such as a scene, empty is everyday
         return "for no rows"
-    numbers = [array for array in arrays if array.dtype.kind == "f"]
+    numbers = [array for array in _arrays(args) if array.dtype.kind == "f"]
     if not all(np.isfinite(array).all() for array in numbers):
         return "where a value is not finite"
-    if any(np.abs(array).max() >= LARGE for array in numbers):
+    if any(np.abs(array).max(initial=0.0) >= LARGE for array in numbers):
         return "at a large magnitude"
-    if any(len(array) >= MANY for array in arrays):
-        return "for many rows"
-    rows = [value for value in args if isinstance(value, np.ndarray) and value.ndim > 1]
+    rows = [array for array in plain if array.ndim > 1]
     return "for one row" if rows and all(len(array) == 1 for array in rows) else ""
 
 
