@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -154,6 +155,14 @@ VALUES: dict[str, Callable[[Array], Array]] = {
 @pytest.mark.parametrize("text", VALUES)
 def test_one_function_of_each_value(text: str) -> None:
     assert said(VALUES[text](RIGHT), RIGHT) == text
+
+
+@pytest.mark.parametrize("text", [*ORDERS, *VALUES])
+def test_hidden_checks_hear_the_kind_without_a_number_of_the_answer(text: str) -> None:
+    found = find_relation({**ORDERS, **VALUES}[text](RIGHT), RIGHT, 1e-9)
+    assert found is not None
+    assert not re.search(r"\d\.\d|\d of \d|\d, \d|\d and \d are", found.kind)
+    assert found.kind[0] != " "
 
 
 def test_the_other_way_round() -> None:

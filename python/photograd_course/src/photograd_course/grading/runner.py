@@ -169,8 +169,11 @@ class _BodyBroke(Exception):
 
 
 def _general_advice(check: Check, failed: Mapping[str, str]) -> str:
-    """What to read where nothing better is known: a check that has failed before, or the hint."""
-    about = [failed[name] for name in (*check.needs, *check.calls) if name in failed]
+    """What to read where nothing better is known: a check that has failed before, or the hint.
+
+    Only of the same functions: what a check needs besides is not to blame where this is said.
+    """
+    about = [failed[name] for name in check.calls if name in failed]
     return f"{about[0]} fails as well: begin there" if about else check.hint
 
 

@@ -2,8 +2,9 @@
 
 A wrong answer to a hidden check can be made of its input: an exception's name, the value at the
 worst index, a shape, even the size of an error. From hidden checks nothing is said that a
-submission could have written, numbers but for an order of magnitude included; from secret ones
-nothing at all.
+submission could have written, numbers but for an order of magnitude included. What is said besides
+is one of a few sentences: how all values relate to the right ones (`grading.relations`, without
+numbers), and the class of the arguments. From secret checks nothing is said at all.
 """
 
 from __future__ import annotations
