@@ -189,6 +189,9 @@ def test_a_failure_names_the_argument_that_was_changed_and_the_class_of_argument
     with pytest.raises(StudentFailure) as raised:
         t.call("g", np.zeros((0, 2)), returns=Number())
     assert raised.value.case == "for no rows"
+    with pytest.raises(StudentFailure) as raised:
+        t.call("absent", np.zeros((0, 2)), returns=Number())
+    assert raised.value.case == ""  # of no argument's doing
     with t.situation("for one row"), pytest.raises(CheckFailed) as failed:
         t.close("y", 1.0, 2.0, TIGHT)
     assert "case" not in failed.value.details  # the block itself adds it

@@ -19,6 +19,8 @@ from .specs import Spec
 from .tolerance import Tolerance
 from .wording import changed_argument, not_finite, power_of_ten, worst_entry
 
+# Reasons for no answer that may have to do with the arguments.
+OF_ARGUMENTS = ("raised", "timeout", "died", "output")
 Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
 
 
@@ -152,7 +154,8 @@ class Trial:
             failure.details.setdefault("case", self._situation or situation_of(args))
             raise
         except StudentFailure as failure:
-            failure.case = failure.case or self._situation or situation_of(args)
+            if failure.reason in OF_ARGUMENTS:
+                failure.case = failure.case or self._situation or situation_of(args)
             raise
 
     def look(self, function: str, *args: Any, returns: Spec, layout: str = "plain") -> Any:
