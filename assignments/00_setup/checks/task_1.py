@@ -32,7 +32,7 @@ def agrees_with_differences(t):
 
 @check(
     "00.1.step",
-    points=1,
+    points=0.5,
     tolerance=ROUNDING,
     sole="the same mistakes as a step downhill shows them: why they matter",
 )

@@ -6,7 +6,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, checks_for
 
 from ..common import walk
-from .common import FAR
+from .common import FAR, rate
 
 check = checks_for(calls=("gd_1d",), visibility="hidden")
 
@@ -19,9 +19,15 @@ check = checks_for(calls=("gd_1d",), visibility="hidden")
     battery=[
         Subject(
             "gd_1d",
-            lambda t, n: (math.cos, lambda x: -math.sin(x), float(t.rng.uniform(0.3, 3.0)), 0.3, n),
+            lambda t, n: (
+                math.cos,
+                lambda x: -math.sin(x),
+                float(t.rng.uniform(0.3, 3.0)),
+                rate(n),
+                n,
+            ),
             walk,
-            sizes=FAR,
+            **FAR,
         )
     ],
 )

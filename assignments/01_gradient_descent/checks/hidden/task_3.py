@@ -6,7 +6,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, hidden_check
 
 from ..common import EXACT, on_points, rotated_bowl, walk
-from .common import FAR, bowls
+from .common import FAR, bowls, rate
 
 
 def left_domain(t, n):
@@ -31,9 +31,9 @@ def left_domain(t, n):
     battery=[
         Subject(
             "gd_nd",
-            lambda t, n: (*bowls(t, n), 0.3, n),
+            lambda t, n: (*bowls(t, n), rate(n), n),
             lambda n: walk(n, max(n, 1)),
-            sizes=FAR,
+            **FAR,
             tolerance=EXACT,
         ),
         Subject(
@@ -41,6 +41,7 @@ def left_domain(t, n):
             left_domain,
             lambda n: Items(Array((n + 1, 2)), Array((n + 1,), finite=False), Truth()),
             sizes=(1, 2),
+            large=60,
         ),
     ],
 )

@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Array, Subject, Tolerance, hidden_check
 
-from .common import FAR, bowls
+from .common import FAR, bowls, rate
 
 
 @hidden_check(
@@ -15,9 +15,9 @@ from .common import FAR, bowls
     battery=[
         Subject(
             "momentum",
-            lambda t, n: (*bowls(t, n)[1:], 0.3, 0.7, n),
+            lambda t, n: (*bowls(t, n)[1:], rate(n) / 3, 0.7, n),
             lambda n: Array((n + 1, max(n, 1))),
-            sizes=FAR,
+            **FAR,
         )
     ],
 )

@@ -5,7 +5,7 @@ from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_5 import scripted
-from .common import FAR, bowls
+from .common import FAR, bowls, rate
 
 
 @hidden_check(
@@ -17,9 +17,9 @@ from .common import FAR, bowls
     battery=[
         Subject(
             "adam",
-            lambda t, n: (*bowls(t, n)[1:], 0.1, n),
+            lambda t, n: (*bowls(t, n)[1:], rate(n) / 3, n),
             lambda n: Array((n + 1, max(n, 1))),
-            sizes=FAR,
+            **FAR,
         )
     ],
 )

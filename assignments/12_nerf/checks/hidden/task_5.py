@@ -25,7 +25,7 @@ def given(t, n):
     needs=EARLIER,
     tolerance=EXACT,
     sole="the same mistakes in unseen batches",
-    battery=[Subject("loss_and_grad", given, lambda _: loss_spec(SHAPES))],
+    battery=[Subject("loss_and_grad", given, lambda _: loss_spec(SHAPES), large=300)],
 )
 def gradients_of_random_batches(t):
     """Loss and gradient are right for random batches, and cheap."""

@@ -20,7 +20,9 @@ def stroke(t, n):
     points=2,
     tolerance=EXACT,
     sole="unseen strokes",
-    battery=[Subject("stroke_backward", stroke, lambda _: Items(Array((3, 2)), Number()))],
+    battery=[
+        Subject("stroke_backward", stroke, lambda _: Items(Array((3, 2)), Number()), large=150)
+    ],
 )
 def unseen_strokes(t):
     """Random strokes, compared with the solution."""

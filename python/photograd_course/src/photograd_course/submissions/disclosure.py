@@ -57,7 +57,9 @@ def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
         return _wrong(outcome, details)
     if outcome.reason in _HARMLESS:
         return outcome.text
-    return _SENTENCES.get(outcome.reason, "no valid answer came")
+    said = _SENTENCES.get(outcome.reason, "no valid answer came")
+    case = outcome.details.get("case")
+    return f"{said} ({case})" if case else said
 
 
 def _wrong(outcome: Outcome, details: dict[str, Any]) -> str:
