@@ -7,23 +7,21 @@ values that no example shows; the expected values are the reference's, and some 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..worker.layouts import LAYOUTS
 from .cost import agree
-from .failures import CheckFailed, GraderFault, StudentFailure
+from .failures import GraderFault
 from .specs import Spec
 from .tolerance import Tolerance
 from .trial import Trial
 
 SIZES = (1, 2, 7)
 LARGE = 1000
-FEW = 50
 COTANGENT_SCALES = (1e-6, 1e6)  # an adjoint is linear in what arrives
 
 
@@ -112,11 +110,9 @@ def require_sizes(trial: Trial, subject: Subject) -> None:
     """
     for n in (*subject.sizes, subject.large):
         args = subject.make(trial, n)
-        with _said(f"at {_size(n)}"):
-            got = trial.call(subject.function, *args, returns=subject.returns(n))
+        got = trial.call(subject.function, *args, returns=subject.returns(n))
         if subject.has_right:
-            what = f"{subject.function} at {_size(n)}"
-            _require_right(trial, subject, args, got, what)
+            _require_right(trial, subject, args, got, f"{subject.function} at size {n}")
         elif subject.rows and n == subject.large:
             _rows_alone(trial, subject, args, _parts(got), n)
 
@@ -129,8 +125,7 @@ def left_unchanged(trial: Trial, subject: Subject, n: int = 5) -> None:
     args = subject.make(trial, n)
     right = subject.answer(trial, args) if subject.has_right else None
     for layout in LAYOUTS:  # the plain one first
-        with _said(f"given {layout} arrays"):
-            got = trial.look(subject.function, *args, returns=subject.returns(n), layout=layout)
+        got = trial.look(subject.function, *args, returns=subject.returns(n), layout=layout)
         got = subject.compared(trial, args, got)
         right = got if right is None else right
         _require_equal(trial, subject, got, right, f"{subject.function} of {layout} arrays")
@@ -207,24 +202,6 @@ def _times(value: Any, factor: float) -> Any:
     if isinstance(value, (list, tuple)):
         return [_times(each, factor) for each in value]
     return value * factor
-
-
-def _size(n: int) -> str:
-    """A number of rows in words, for what is said of hidden checks holds no number of theirs."""
-    words = {0: "size zero", 1: "size one"}
-    return words.get(n, "a small size" if n <= FEW else "a large size")
-
-
-@contextmanager
-def _said(case: str) -> Iterator[None]:
-    """Say in which case no answer came, or one of another form."""
-    try:
-        yield
-    except CheckFailed as failure:
-        failure.text = f"{failure.text} ({case})"
-        raise
-    except StudentFailure as failure:
-        raise replace(failure, case=case) from failure
 
 
 def _one_row(value: Any, row: int) -> Any:

@@ -47,14 +47,12 @@ class StudentFailure(Exception):
         text: one sentence for the student.
         private: what may hold input of a check (an exception's text); shown for public checks only.
         line: (file, line) in the submission.
-        case: which class of inputs it was, in the check's own words, such as "at size one".
     """
 
     reason: str
     text: str
     private: str = ""
     line: tuple[str, int] | None = None
-    case: str = ""
 
     def __str__(self) -> str:
         return self.text

@@ -199,8 +199,6 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
         verdict = _Verdict(Status.FAILED, failure.reason, failure.text)
         if failure.line is not None:
             verdict.details["line"] = list(failure.line)
-        if failure.case:
-            verdict.details["case"] = failure.case
         if failure.private and check.visibility == "public":
             verdict.details["exception"] = failure.private
     except Exception as error:

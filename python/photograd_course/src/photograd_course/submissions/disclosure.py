@@ -57,9 +57,7 @@ def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
         return _wrong(outcome, details)
     if outcome.reason in _HARMLESS:
         return outcome.text
-    said = _SENTENCES.get(outcome.reason, "no valid answer came")
-    case = outcome.details.get("case")
-    return f"{said} ({case})" if case else said
+    return _SENTENCES.get(outcome.reason, "no valid answer came")
 
 
 def _wrong(outcome: Outcome, details: dict[str, Any]) -> str:
