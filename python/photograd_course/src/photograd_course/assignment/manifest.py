@@ -44,7 +44,7 @@ class Manifest:
         prerequisites: ids of assignments that come before.
         hours: expected work.
         tasks: in order.
-        imports: what the graded module may import.
+        imports: what the graded module may import besides the pure modules of `worker.screen`.
         vocabulary: names from the solution that students may see.
         minimum_mode: weakest isolation that a verdict may rest on.
         points: {"code": 75, "questions": 25}, checked against checks and questions.

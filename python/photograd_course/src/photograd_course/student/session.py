@@ -20,6 +20,7 @@ from ..cli.output import emit
 from ..errors import IoError, SceneError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
+from ..printable import printable
 from .checking import check_here, select
 from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
@@ -54,7 +55,10 @@ def run_check_command(
         if pictures and (path := draw_failure(outcome, folder.path)) is not None:
             console.print(f"    picture: {path.name}", soft_wrap=True)
 
-    outcomes = check_here(bundle, files, checks, on_outcome=show)
+    def refuse(said: str) -> None:
+        console.print(f"note: {printable(said)}", soft_wrap=True, markup=False, style="yellow")
+
+    outcomes = check_here(bundle, files, checks, on_outcome=show, on_refused=refuse)
     print_summary(outcomes, console)
     if task is None:
         print_rest(bundle, console)

@@ -12,13 +12,14 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from . import refused
 from .adjoint_rule import breaches
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
 from .layouts import laid_out, without_functions
 from .modules import SourceFinder, line_of
-from .screen import forbidden_imports
+from .screen import without_forbidden
 
 LONGEST_MESSAGE = 2000
 
@@ -58,29 +59,29 @@ def apply(policy: Any, channel: Channel) -> list[str]:
 
 
 def load_modules(channel: Channel, load: dict[str, Any]) -> dict[str, ModuleType] | None:
-    """Import the submission, and put the grader's functions in the place of substituted ones."""
+    """Import the submission, and put the grader's functions in the place of substituted ones.
+
+    "loaded" names the imports that bind stand-ins.
+    """
     sources: dict[str, str] = load["sources"]
-    own, graded = list(sources), load["graded"]
+    own, trees, problems = list(sources), {}, []
     try:
-        problems = []
-        for name in graded:
-            problems += forbidden_imports(name, sources[name], load["allowed"], own)
+        for name in load["graded"]:
+            trees[name], found = without_forbidden(name, sources[name], load["allowed"], own)
+            problems += found
     except BaseException as error:
         channel.send("unreadable", describe(error, own))
         return None
-    if problems:
-        channel.send("forbidden", problems)
-        return None
-    sys.meta_path.append(SourceFinder(sources))
+    sys.meta_path.append(SourceFinder(sources, trees))
     try:
-        modules = {name: importlib.import_module(name) for name in sources}
+        modules = refused.load(lambda: {name: importlib.import_module(name) for name in sources})
     except BaseException as error:
         channel.send("broken", describe(error, own))
         return None
     for function, stub in load["substitutes"].items():
         module, _, attribute = function.rpartition(".")
         setattr(modules[module], attribute, stub)
-    channel.send("loaded", None)
+    channel.send("loaded", problems)
     return modules
 
 

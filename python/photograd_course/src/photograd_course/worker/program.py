@@ -26,6 +26,7 @@ PROGRAM = (
     "layouts.py",
     "modules.py",
     "preload.py",
+    "refused.py",
     "screen.py",
 )
 # One thread: a mathematics library that starts more would meet the limits on memory and processes.
