@@ -115,6 +115,10 @@ def test_check_values_of_distances(solution) -> None:
     np.testing.assert_allclose(got, [2.266667, 5.333333, 5.955556], atol=PRINTED)
     got = solution.sample_distances(np.array([[2.0, 6]]), np.ones((1, 1)), u)[0]
     np.testing.assert_allclose(got, [2.266667, 4, 5.866667], atol=PRINTED)
+    u[0, 2] = 1 - 2.0**-53
+    assert u[0, 2] < 1
+    for given in ((edges, weights), (np.array([[2.0, 6]]), np.ones((1, 1)))):
+        assert solution.sample_distances(*given, u)[0, 2] == 6
 
 
 def test_check_values_of_field_loss_and_training(solution) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Array, Subject, Tolerance, hidden_check
 
-from .common import FAR, bowls, rate
+from .common import FAR, MANY, asked_once_a_step, bowls, rate
 
 
 @hidden_check(
@@ -34,3 +34,9 @@ def a_parabola_swings_as_two_roots_say(t):
         powers = np.arange(n + 1)
         expected[:, i] = (x0[i] * (weight * first**powers + (1 - weight) * second**powers)).real
     t.close("the points", x, expected)
+    asked_once_a_step(
+        t,
+        "momentum",
+        lambda y: curvatures * y,
+        lambda slope: t.call("momentum", slope, x0, 0.01, beta, MANY, returns=Array((MANY + 1, 3))),
+    )

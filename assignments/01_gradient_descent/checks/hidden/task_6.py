@@ -100,7 +100,7 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
             "backtracking",
             refused,
             lambda _: Number(),
-            sizes=(0, 1, 40),
+            sizes=(1, 2, 40),
             large=400,
             tolerance=EXACT,
         )

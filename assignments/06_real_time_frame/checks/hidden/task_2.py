@@ -23,7 +23,7 @@ def unseen(t, count, size=12):
     calls=("shadow_test",),
     tolerance=FAITHFUL,
     sole="the same mistakes at unseen points",
-    battery=[Subject("shadow_test", unseen, lambda n: Array((n,)), rows=(0, 1), sizes=(0, 1, 7))],
+    battery=[Subject("shadow_test", unseen, lambda n: Array((n,)), rows=(0, 1), sizes=(1, 7))],
 )
 def random_points_before_random_maps(t):
     """Random points with random normals and biases, inside of the map and beyond."""

@@ -18,7 +18,7 @@ from ..task_1 import encoded
             "positional_encoding",
             lambda t, n: (t.rng.uniform(-1.0, 1.0, (n, 3)), 4),
             lambda n: Items(Array((n, 27)), Array((n, 27))),
-            sizes=(0, 1, 9),
+            sizes=(1, 9),
             rows=(0,),
         )
     ],

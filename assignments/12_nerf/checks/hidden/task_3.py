@@ -31,6 +31,12 @@ def distances_on_random_rays(t):
         u = t.rng.random((rays, n))
         right = t.reference.sample_distances(edges, weights, u)
         t.close("distances", sampled(t, edges, weights, u), right)
+    # The last v is rounded to 1, the end of the CDF.
+    edges, weights = intervals(t.rng, 4, 3)
+    weights[:, -1] += 0.1
+    u = np.concatenate([t.rng.random((4, 5)), np.full((4, 1), np.nextafter(1.0, 0.0))], axis=1)
+    right = t.reference.sample_distances(edges, weights, u)
+    t.close("distances to the last edge", sampled(t, edges, weights, u), right)
 
 
 @check("12.3.chi", points=2, sole="the distribution itself, whatever the formula")

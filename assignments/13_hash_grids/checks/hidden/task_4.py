@@ -12,7 +12,7 @@ check = checks_for(calls=("encode_backward",), needs=EARLIER, tolerance=EXACT, v
 def scattered(t, n):
     """Arguments of `encode_backward`, for n points, the first of them outside."""
     levels = layout([2, 4, 9], 3, 64)
-    table, points = table_for(t, levels), t.rng.uniform(-0.1, 1.1, (n, 3))
+    table, points = table_for(t, levels), t.rng.uniform(-0.5, 1.5, (n, 3))
     points[:1, 0] = 1.05
     return points, table, levels, random_cotangent(t.rng, (n, 6))
 

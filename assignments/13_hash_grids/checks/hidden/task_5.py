@@ -22,13 +22,7 @@ def moving(t, n):
     tolerance=EXACT,
     sole="the same mistakes at unseen values",
     battery=[
-        Subject(
-            "adam_rows",
-            moving,
-            lambda n: Items(*3 * [Array((n, 2))]),
-            sizes=(0, 1, 2, 7),
-            rows=(0, 1, 2, 3),
-        )
+        Subject("adam_rows", moving, lambda n: Items(*3 * [Array((n, 2))]), rows=(0, 1, 2, 3))
     ],
 )
 def steps_of_random_rows(t):

@@ -26,8 +26,10 @@ def stroke(t, n):
 )
 def unseen_strokes(t):
     """Random strokes, compared with the solution."""
-    for n in (3, 10):
+    for n in (3, 10, 0):
         given = stroke(t, n)
+        if n == 0:  # a center lies on the curve, at its start
+            given[0][0] = 1.5, 2.5
         right = t.reference.stroke_backward(*given)
         got = stroke_slopes(t, *given)
         t.close("d_curve", got[0], right[0])
