@@ -26,7 +26,7 @@ CHI_SQUARE = 57.8
 )
 def distances_on_random_rays(t):
     """Distances are right on random rays."""
-    for rays, count, n in ((3, 1, 5), (4, 12, 1), (5, 6, 8)):
+    for rays, count, n in ((3, 1, 5), (4, 12, 1), (5, 6, 8), (2, 100, 150)):
         edges, weights = intervals(t.rng, rays, count)
         u = t.rng.random((rays, n))
         right = t.reference.sample_distances(edges, weights, u)

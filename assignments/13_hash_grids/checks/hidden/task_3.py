@@ -23,7 +23,12 @@ def encoding(t, n):
 )
 def features_of_random_points(t):
     """Features of random points, on dense and hashed levels."""
-    for D, resolutions, features in ((2, [1, 5, 40], 3), (3, [4, 30], 2), (2, [1000, 7], 1)):
+    for D, resolutions, features in (
+        (2, [1, 5, 40], 3),
+        (3, [4, 30], 2),
+        (2, [1000, 7], 1),
+        (2, [3] * 20, 9),
+    ):
         levels = layout(resolutions, D, 100)
         table, points = table_for(t, levels, features), t.rng.uniform(-0.5, 1.5, (20, D))
         right = t.reference.encode(points, table, levels)

@@ -32,7 +32,12 @@ def scattered(t, n):
 )
 def the_adjoint_at_random_points(t):
     """Both parts of the adjoint are right at random points, on dense and hashed levels."""
-    for D, resolutions, features in ((2, [1, 5, 40], 3), (3, [4, 30], 2), (2, [1000, 7], 1)):
+    for D, resolutions, features in (
+        (2, [1, 5, 40], 3),
+        (3, [4, 30], 2),
+        (2, [1000, 7], 1),
+        (2, [3] * 20, 9),
+    ):
         levels = layout(resolutions, D, 100)
         table, points = table_for(t, levels, features), points_within(t, 20, D, levels)
         g = random_cotangent(t.rng, (20, len(levels) * features))
