@@ -15,6 +15,10 @@ HEAD = """
 import numpy as np
 import os.path, math as m, sys as s
 from collections import deque
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import lru_cache
+from typing import NamedTuple
 from numba import njit, prange as each
 from torch import *
 try:
@@ -34,6 +38,25 @@ if far:
 
 class Module(njit.Module):
     pass
+
+
+@dataclass(frozen=True)
+class Pair:
+    x: float
+    y: float = 0.0
+
+
+class Axis(IntEnum):
+    X = 0
+
+
+class Named(NamedTuple):
+    x: float
+
+
+@lru_cache
+def same(x):
+    return x
 
 
 @njit(fast=True)
@@ -59,6 +82,7 @@ RIGHT = {
     "the handler for a missing module": "x if cupy is None else 0.0",
     "what is allowed beside it": "m.sqrt(x) + len(deque([far]))",
     "what does not use it": "x",
+    "what pure modules make": "same(Named(Pair(x).x)[Axis.X])",
 }
 
 

@@ -25,7 +25,7 @@ def thin_layers(t, n):
     battery=[
         Subject(
             "adapters.composite_splats",
-            lambda t, n: thin_layers(t, n),
+            thin_layers,
             lambda _: Array((3, 3)),
             right=values("composite_splats"),
             sizes=(1, 2, 40),
