@@ -46,7 +46,11 @@ def only_order(_, edges, root):
     tolerance=EXACT,
     battery=[
         Subject(
-            "adapters.order_again", winding, lambda n: Array((4 * n + 1,), "i8"), right=only_order
+            "adapters.order_again",
+            winding,
+            lambda n: Array((4 * n + 1,), "i8"),
+            right=only_order,
+            large=300,  # deep, and not too deep for recursion, which 02.4.chain is about
         )
     ],
 )
