@@ -71,11 +71,21 @@ class Subject:
         return self.compared(trial, args, getattr(trial.reference, self.function)(*args))
 
     def compared(self, trial: Trial, args: Sequence[Any], answer: Any) -> Any:
-        """The part of an answer that is compared."""
+        """The part of an answer that is compared.
+
+        Args:
+            trial: of the check.
+            args: with which the function was called.
+            answer: to them, of the submission or the reference.
+        """
         return answer if self.common is None else self.common(trial, args, answer)
 
     def factors(self, trial: Trial) -> Mapping[int, Sequence[float]]:
-        """`scales`, and those of cotangents."""
+        """`scales`, and those of cotangents.
+
+        Args:
+            trial: of the check, whose reference names the arguments.
+        """
         function = getattr(trial.reference, self.function, None)
         if function is None:
             return self.scales
@@ -186,7 +196,13 @@ def bad_values(trial: Trial, subject: Subject, n: int = 4) -> None:
 
 
 def scaled_values(trial: Trial, subject: Subject, n: int = 5) -> None:
-    """The values are right where an argument is far larger or smaller, as the text allows it."""
+    """The values are right where an argument is far larger or smaller, as the text allows it.
+
+    Args:
+        trial: of the check.
+        subject: the function, with its `scales`.
+        n: rows.
+    """
     for position, factors in subject.factors(trial).items():
         for factor in factors:
             args = list(subject.make(trial, n))

@@ -50,7 +50,11 @@ class SourceFinder(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
         return compile(code, f"{fullname}.py", "exec", dont_inherit=True)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Run a module, which finds under one more name what makes stand-ins."""
+        """Run a module, which finds under one more name what makes stand-ins.
+
+        Args:
+            module: as it was made by its spec.
+        """
         setattr(module, STAND_IN, StandIn)
         super().exec_module(module)
 

@@ -37,7 +37,11 @@ class StandIn:
         return self._passed_on()
 
     def __mro_entries__(self, bases: tuple[Any, ...]) -> tuple[type, ...]:
-        """As a base class: one whose objects are stand-ins."""
+        """As a base class: one whose objects are stand-ins.
+
+        Args:
+            bases: of the class statement.
+        """
         return (type("Refused", (), {"__new__": lambda *_args, **_named: self._passed_on()}),)
 
     def __hash__(self) -> int:
@@ -57,7 +61,11 @@ for _name in (*COMPARED, *CONVERTED, "setitem", "delitem"):
 
 
 def load(do: Callable[[], T]) -> T:
-    """What ``do`` returns, called while stand-ins make stand-ins."""
+    """The result of a call during which stand-ins make stand-ins.
+
+    Args:
+        do: imports modules.
+    """
     StandIn.loading = True
     try:
         return do()
