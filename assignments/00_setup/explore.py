@@ -3,17 +3,21 @@
 # Plots an image, the photograph, and where the image is too bright or too dark.
 
 # %%
+from photograd_course import explore
+
+explore.options()
+
+import first_gradient as mine
 import numpy as np
-from first_gradient import loss, loss_gradient
 from matplotlib.figure import Figure
 
 # %%
 rows, columns = np.mgrid[0:48, 0:64]
 photograph = np.exp(-((columns - 40) ** 2 + (rows - 22) ** 2) / 150.0)
 picture = np.exp(-((columns - 26) ** 2 + (rows - 26) ** 2) / 150.0)
-gradient = loss_gradient(picture, photograph)
-print(f"loss {loss(picture, photograph):.4f}")
-print(f"after one step of 600: {loss(picture - 600 * gradient, photograph):.4f}")
+gradient = mine.loss_gradient(picture, photograph)
+print(f"loss {mine.loss(picture, photograph):.4f}")
+print(f"after one step of 600: {mine.loss(picture - 600 * gradient, photograph):.4f}")
 
 # %%
 figure = Figure(figsize=(9, 2.8), layout="constrained")
@@ -28,5 +32,5 @@ for k, (title, values, colors) in enumerate(panels):
     image = axes.imshow(values, interpolation="nearest", **colors)
     axes.set_title(title)
 figure.colorbar(image, ax=figure.axes, label="too dark < 0 < too bright")
-figure.savefig("gradient.png", dpi=110)
+explore.keep_picture(figure, "gradient.png", 110)
 print("gradient.png: blue where the picture is too dark, red where it is too bright")

@@ -294,5 +294,5 @@ def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_p
     assert found == pytest.approx(0.15, abs=0.05)
     none = explore("--steps", "0")
     assert none.returncode == 1
-    assert "steps are 1 or more" in none.stderr
+    assert "--steps: expected a whole number of 1 or more, got '0'" in none.stderr
     assert "Traceback" not in none.stderr

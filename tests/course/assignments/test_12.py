@@ -210,7 +210,9 @@ def test_the_exploration_runs_and_says_what_it_did(tmp_path: Path, capture: bool
         shutil.copy(FOLDER / name, tmp_path)
     for name, folder in EARLIER.items():
         shutil.copy(folder / name, tmp_path)
+    shutil.copytree(FOLDER / "data", tmp_path / "data")
     order = [sys.executable, "explore.py", "--views", "3", "--pixels", "6", "--steps", "2"]
+    order += ["--shown", "12"]
     if capture:
         order += ["--capture", str(small_capture(tmp_path / "photos"))]
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)

@@ -50,7 +50,8 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     if (folder / "explore.py").exists():
         script = _text(folder / "explore.py")
         files["explore.py"] = _encode(script)
-        files["explore.ipynb"] = _encode(notebook_of(script))
+        graded = [f"{name}.py" for name in (manifest.module, *manifest.brought)]
+        files["explore.ipynb"] = _encode(notebook_of(script, graded))
     if (folder / "adapters.py").exists():
         files["adapters.py"] = _encode(_text(folder / "adapters.py"))
     for pattern in COPIED:
