@@ -3,11 +3,14 @@
 #
 # Nothing here is graded. Each cell uses your own `descent.py`; a cell whose function is not written
 # yet stops with the name of the task. Change numbers, run again. The whole script takes seconds.
+# `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
 from photograd_course import explore
 
-explore.options()
+given = explore.options(figure=explore.between(1, 0, 1))
+
+import importlib
 
 import descent
 import numpy as np
@@ -157,3 +160,11 @@ axes = plot()
 axes.semilogy(chosen, ".")
 axes.set_title(f"ends at ({x[0]:.4f}, {x[1]:.4f})")
 keep(axes, "line_search", "step", "tau")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, descent)

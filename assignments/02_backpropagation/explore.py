@@ -1,14 +1,17 @@
 # %% [markdown]
 # # Play with your engine
 #
-# Nothing here is graded. Run the whole file, or cell by cell in an editor that knows `# %%`.
-# It needs a finished `engine.py`, takes some ten seconds, and writes two pictures. `--hinges`,
-# `--steps` and `--rate` are those of the network.
+# Nothing here is graded. Run the whole file, or cell by cell in an editor that knows `# %%`. It
+# needs a finished `engine.py`, takes some ten seconds, and writes two pictures. `--hinges`,
+# `--steps` and `--rate` are those of the network. `--figure 0` leaves out Figure 1 of the handout,
+# at the end.
 
 # %%
 from photograd_course import explore
 
-given = explore.options(hinges=8, steps=200, rate=0.35)
+given = explore.options(hinges=8, steps=200, rate=0.35, figure=explore.between(1, 0, 1))
+
+import importlib
 
 import engine
 import numpy as np
@@ -127,3 +130,11 @@ left.legend()
 right.semilogy(losses)
 right.set(xlabel="step", ylabel="loss")
 explore.keep_picture(figure, "explore_network.png", 110)
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, engine)

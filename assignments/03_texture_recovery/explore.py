@@ -4,7 +4,8 @@
 # that is installed. Never graded. Run it as `python explore.py`, with your own image as `python
 # explore.py --image FILE`; `--size`, `--samples` (per texel) and `--steps` change the amount of
 # work. `--fine 4` measures an image with four times as many rows and columns as the recovered
-# texture: its edges then lie inside texels.
+# texture: its edges then lie inside texels. `--figure 0` leaves out Figure 1 of the handout, at the
+# end.
 
 # %%
 from photograd_course import explore
@@ -15,6 +16,7 @@ given = explore.options(
     samples=explore.at_least(16.0, 0.1),
     steps=40,
     fine=1,
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -183,3 +185,11 @@ axes.semilogy(history)
 axes.set(title="loss", xlabel="step")
 explore.keep_picture(figure, "recovered.png", 110)
 print("recovered.png: the texture, the first gradient beside the error, the residual")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

@@ -5,7 +5,8 @@
 # how much the core's image differs from yours. Never graded. Run it as `python explore.py`;
 # `--roughness` and `--metalness` change the ball, `--start` the initial roughness of the fit,
 # `--pixels` and `--steps` the amount of work. The metalness is known, unless `--start-metalness`
-# says from where the fit starts to look for it.
+# says from where the fit starts to look for it. `--figure 0` leaves out Figure 1 of the handout, at
+# the end.
 
 # %%
 from photograd_course import explore
@@ -17,6 +18,7 @@ given = explore.options(
     metalness=explore.between(0.0, 0, 1),
     start=explore.between(0.7, 0.045, 1),
     start_metalness=explore.same_as("metalness", 0.0, 1),
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -161,3 +163,11 @@ axes.semilogy(np.degrees(angle), mine.ggx_lobe(wo, wi, np.full(len(wo), rough)))
 axes.set(xlabel="viewer, degrees", title="lobe, light from −45°")
 explore.keep_picture(figure, "reflectance.png")
 print("reflectance.png: chart, derivative with respect to roughness, fit, lobe")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

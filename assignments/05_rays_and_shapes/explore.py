@@ -2,15 +2,19 @@
 # # Rays and their closest hits
 # Renders three images with your functions: a ring of triangles and the cost of each pixel; a ball
 # of glass over a floor; a sphere-traced ball and its derivative with respect to the radius. Where
-# the C++ core is installed, Embree's results stand beside yours. Never graded.
-# `python explore.py` takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the
-# glass) and `--rays` (to compare with the core).
+# the C++ core is installed, Embree's results stand beside yours. Never graded. `python explore.py`
+# takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays`
+# (to compare with the core). `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
 from photograd_course import explore
 
 given = explore.options(
-    triangles=256, size=explore.at_least(64, 4), eta=explore.between(1.5, 0.1, 10), rays=2000
+    triangles=256,
+    size=explore.at_least(64, 4),
+    eta=explore.between(1.5, 0.1, 10),
+    rays=2000,
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -165,3 +169,11 @@ for each in axes.flat:
     each.set(xticks=[], yticks=[])
 explore.keep_picture(figure, "seen.png", 110)
 print("wrote seen.png")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

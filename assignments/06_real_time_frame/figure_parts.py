@@ -3,12 +3,9 @@
 import functools
 
 import numpy as np
-from photograd_course.assignment.load import load_module
-from photograd_course.build.kits import source_folders
+from photograd_course.build.kit_module import kit_module
 
-large = load_module(
-    "frame", (source_folders()["06_real_time_frame"] / "data" / "frame.py").read_text("utf-8")
-).large
+large = kit_module("06_real_time_frame", "frame").large
 H, W = 72, 116  # pixels of the small frames
 START, TUNED = np.array([0.5, 1.0, 1.0]), np.array([1.6, 0.3, 2.8])
 TONES = np.array([0.2, 2.5])

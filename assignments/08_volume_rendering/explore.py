@@ -4,7 +4,8 @@
 # next to the C++ core where that is installed. Never graded. `python explore.py` takes `--steps`,
 # `--thick` (a factor for extinctions), `--size` (pixels per side) and `--capture DIR`: a folder
 # with `transforms.json` and its images. For a capture, `--box` is the extent of the box from the
-# origin, `--voxels` its resolution, and `--views` the number of images to use.
+# origin, `--voxels` its resolution, and `--views` the number of images to use. `--figure 0` leaves
+# out Figure 1 of the handout, at the end.
 
 # %%
 from photograd_course import explore
@@ -17,8 +18,10 @@ given = explore.options(
     box=explore.at_least(1.0, 1e-6),
     voxels=32,
     views=8,
+    figure=explore.between(1, 0, 1),
 )
 
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -182,9 +185,9 @@ if capture:
     gray[..., 3] = 0.1 * thick / reach
     total, count = np.zeros(gray.shape), 0
     for photo in read_capture(Path(capture), size, given.views):
-        given = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
-        wrong = mine.render_rays(gray, *given) - photo.colors.reshape(-1, 3)
-        total += mine.render_adjoint(gray, *given, 2 * wrong / len(wrong))[0]
+        asked = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
+        wrong = mine.render_rays(gray, *asked) - photo.colors.reshape(-1, 3)
+        total += mine.render_adjoint(gray, *asked, 2 * wrong / len(wrong))[0]
         count += 1
     titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")
     figure = Figure(figsize=(10, 4), layout="constrained")
@@ -193,3 +196,11 @@ if capture:
         signed(axes, flat, max(np.abs(flat.sum(axis=2)).max(), 1e-300), titles[axis])
     explore.keep_picture(figure, "capture.png")
     print(f"capture.png: gradient of {count} photographs for gray fog; blue: more, red: less")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

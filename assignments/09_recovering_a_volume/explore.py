@@ -4,7 +4,7 @@
 # your functions, next to the C++ core where that is installed. Never graded. `python explore.py`
 # takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total variation) and
 # `--capture DIR`: a folder with `transforms.json` and its images. For a capture, `--box` is the
-# extent of the box from the origin.
+# extent of the box from the origin. `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
 from photograd_course import explore
@@ -17,8 +17,10 @@ given = explore.options(
     tv=explore.at_least(0.01, 0),
     capture=explore.existing(),
     box=explore.at_least(1.0, 1e-6),
+    figure=explore.between(1, 0, 1),
 )
 
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -223,3 +225,11 @@ if capture:
     signed(panels[4], gradient(mine.fog(volume.shape[:3]), train)[..., 3], "derivative, from fog")
     explore.keep_picture(figure, "capture.png")
     print("capture.png: your photographs, the recovered volume, the gradient at fog")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

@@ -7,7 +7,7 @@
 # `--rate` (the learning rate of sigma: 2 here, not 0.4, since toys are opaque), with the core
 # `--views` and `--size` (a power of two), and `--capture DIR`: a folder with `transforms.json` and
 # its images, of a scene that extends `--box` from the origin. Two to ten minutes; `--voxels 16`
-# takes one.
+# takes one. `--figure 0` leaves out Figure 1 of the handout, which takes about a minute.
 
 # %%
 from photograd_course import explore
@@ -22,6 +22,7 @@ given = explore.options(
     size=64,
     capture=explore.existing(),
     box=explore.at_least(1.0, 1e-6),
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -295,3 +296,12 @@ if capture:
         shown(panels[1, column], again[part], shape, "recovered")
     explore.keep_picture(figure, "capture.png", 90)
     print("capture.png: photographs, and the same views of the recovered grid")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    drawn = importlib.import_module("data.figure_1").draw
+    explore.figure_1(lambda module: drawn(module, photographs), mine)

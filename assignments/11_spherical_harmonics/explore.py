@@ -4,7 +4,8 @@
 # with your functions, coarse to fine and with a fixed grid. Where the C++ core is installed, the
 # same fit with its harmonics stands beside yours. Never graded. Run it as `python explore.py`;
 # `--views`, `--pixels`, `--degree`, `--levels` and `--steps` (in all) change the amount of work,
-# `--coarse` the cells of the coarsest level, `--rate` the learning rate.
+# `--coarse` the cells of the coarsest level, `--rate` the learning rate. `--figure 0` leaves out
+# Figure 1 of the handout, which takes about a minute.
 
 # %%
 from photograd_course import explore
@@ -17,6 +18,7 @@ given = explore.options(
     steps=30,
     coarse=explore.at_least(4, 2),
     rate=explore.at_least(0.2, 0),
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -118,3 +120,12 @@ for panels, (title, colors) in zip(figure.subplots(len(rows), 3), rows, strict=T
         axes.set(xticks=[], yticks=[], title=title)
 explore.keep_picture(figure, "plenoxels.png")
 print("plenoxels.png: held-out views; does the highlight move?")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    drawn = importlib.import_module("data.figure_1").draw
+    explore.figure_1(lambda module: drawn(module, teapot), mine)

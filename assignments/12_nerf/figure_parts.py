@@ -4,10 +4,9 @@ import functools
 
 import numpy as np
 from matplotlib.patches import FancyBboxPatch
-from photograd_course.assignment.load import load_module
-from photograd_course.build.kits import source_folders
+from photograd_course.build.kit_module import kit_module
 
-SCENE = load_module("scene", (source_folders()["12_nerf"] / "data" / "scene.py").read_text("utf-8"))
+SCENE = kit_module("12_nerf", "scene")
 photographs, decibels, nearest, places = (
     SCENE.photographs,
     SCENE.decibels,

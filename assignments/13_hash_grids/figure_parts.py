@@ -7,14 +7,11 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from photograd_course.assignment.load import load_module
-from photograd_course.build.kits import source_folders
+from photograd_course.build.kit_module import kit_module
 
 Array = np.ndarray[Any, np.dtype[Any]]
 
-TRAINING = load_module(
-    "training", (source_folders()["13_hash_grids"] / "data" / "training.py").read_text("utf-8")
-)
+TRAINING = kit_module("13_hash_grids", "training")
 decibels, SLOWER = TRAINING.decibels, TRAINING.SLOWER
 
 

@@ -5,13 +5,19 @@
 # `python explore.py` takes `--letters AB`, `--cells` (of the lens, along each axis), `--steps` (at
 # each of three resolutions), `--samples` (of edge sampling, in each step), `--depth` (of the fit of
 # the material) and `--fit` (its steps). Where the C++ core is installed, your edge sampling is
-# compared with its exact derivative.
+# compared with its exact derivative. `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
 from photograd_course import explore
 
 given = explore.options(
-    letters="", cells=64, steps=60, samples=400, depth=explore.at_least(3, 2), fit=45
+    letters="",
+    cells=64,
+    steps=60,
+    samples=400,
+    depth=explore.at_least(3, 2),
+    fit=45,
+    figure=explore.between(1, 0, 1),
 )
 
 import importlib
@@ -125,3 +131,11 @@ for axis in axes.flat[[0, 1, 3, 4]]:
     axis.set(xticks=[], yticks=[])
 explore.keep_picture(figure, "edges_and_light.png", 110)
 print("wrote edges_and_light.png")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

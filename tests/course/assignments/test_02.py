@@ -246,7 +246,11 @@ def test_the_exploration_runs_with_a_finished_engine(tmp_path: Path) -> None:
     for name in ("engine.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     done = subprocess.run(
-        [sys.executable, "explore.py"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "explore.py", "--figure", "0"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert float(re.search(r"grad_check: (\S+)", done.stdout)[1]) < 1e-6

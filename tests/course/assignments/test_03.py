@@ -174,6 +174,7 @@ def test_the_exploration_runs_and_says_what_it_did(
     values = np.random.default_rng(0).integers(0, 256, (rows, columns, 3), dtype=np.uint8)
     Image.fromarray(values).save(tmp_path / "mine.png")
     order = [sys.executable, "explore.py", "--image", "mine.png", "--size", "16", "--steps", "9"]
+    order += ["--figure", "0"]
     order.extend(options)
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr

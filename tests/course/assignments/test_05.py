@@ -268,7 +268,18 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     for name in ("rays.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     done = subprocess.run(
-        [sys.executable, "explore.py", "--triangles", "64", "--size", "32", "--rays", "200"],
+        [
+            sys.executable,
+            "explore.py",
+            "--triangles",
+            "64",
+            "--size",
+            "32",
+            "--rays",
+            "200",
+            "--figure",
+            "0",
+        ],
         cwd=tmp_path,
         capture_output=True,
         text=True,

@@ -249,7 +249,18 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
         shutil.copy(FOLDER / name, tmp_path / name)
     shutil.copy(ASSIGNMENTS / "04_reflectance" / "reflectance.py", tmp_path)
     done = subprocess.run(
-        [sys.executable, "explore.py", "--size", "12", "--samples", "2", "--steps", "20"],
+        [
+            sys.executable,
+            "explore.py",
+            "--size",
+            "12",
+            "--samples",
+            "2",
+            "--steps",
+            "20",
+            "--figure",
+            "0",
+        ],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -278,7 +289,7 @@ def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_p
 
     def explore(*words: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "alone.py", "--size", "6", *words],
+            [sys.executable, "alone.py", "--size", "6", "--figure", "0", *words],
             cwd=tmp_path,
             capture_output=True,
             text=True,

@@ -236,7 +236,7 @@ def test_the_exploration_runs_and_says_what_it_did(tmp_path: Path) -> None:
             [sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, check=False
         )
 
-    few = ("--cells", "24", "--steps", "12", "--fit", "3")
+    few = ("--figure", "0", "--cells", "24", "--steps", "12", "--fit", "3")
     done = explore("alone.py", *few, "--letters", "hq")
     assert done.returncode == 0, done.stderr
     assert "core not installed" in done.stdout

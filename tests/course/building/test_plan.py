@@ -54,7 +54,7 @@ def test_the_course_of_this_repository_has_all_that_it_needs(track: str) -> None
 
 def test_weeks_hours_and_prerequisites(root: Path) -> None:
     table = syllabus("short", root)
-    assert table["hours"] == 12
+    assert table["estimated_hours"] == 12
     assert table["ready"] == 0
     assert [(row["week"], row["needs"], row["state"]) for row in table["weeks"]] == [
         (1, "nothing", "planned"),

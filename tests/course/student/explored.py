@@ -17,19 +17,20 @@ FOLDERS = {path.parent.name[:2]: path.parent for path in ROOT.glob("assignments/
 NUMBERS = sorted(FOLDERS)
 # Options with which an exploration takes seconds.
 TINY: dict[str, dict[str, int]] = {
-    "02": {"steps": 5},
-    "03": {"size": 12, "samples": 4, "steps": 3},
-    "04": {"pixels": 12, "steps": 3},
-    "05": {"triangles": 32, "size": 12, "rays": 20},
+    "01": {"figure": 0},
+    "02": {"figure": 0, "steps": 5},
+    "03": {"figure": 0, "size": 12, "samples": 4, "steps": 3},
+    "04": {"figure": 0, "pixels": 12, "steps": 3},
+    "05": {"figure": 0, "triangles": 32, "size": 12, "rays": 20},
     "06": {"width": 32, "side": 1, "small": 32, "size": 64, "steps": 2, "samples": 4},
-    "07": {"size": 8, "samples": 1, "steps": 2},
-    "08": {"steps": 8, "size": 8},
-    "09": {"views": 4, "pixels": 8, "voxels": 6, "steps": 3},
-    "10": {"voxels": 8, "rounds": 2, "steps": 2, "views": 6, "size": 8},
-    "11": {"views": 4, "pixels": 4, "steps": 3, "coarse": 3, "levels": 2},
+    "07": {"figure": 0, "size": 8, "samples": 1, "steps": 2},
+    "08": {"figure": 0, "steps": 8, "size": 8},
+    "09": {"figure": 0, "views": 4, "pixels": 8, "voxels": 6, "steps": 3},
+    "10": {"figure": 0, "voxels": 8, "rounds": 2, "steps": 2, "views": 6, "size": 8},
+    "11": {"figure": 0, "views": 4, "pixels": 4, "steps": 3, "coarse": 3, "levels": 2},
     "12": {"views": 3, "pixels": 6, "steps": 2, "shown": 12},
     "13": {"steps": 5, "size": 32, "log2": 8, "finest": 32, "cells": 16},
-    "14": {"cells": 24, "steps": 4, "samples": 40, "fit": 2},
+    "14": {"figure": 0, "cells": 24, "steps": 4, "samples": 40, "fit": 2},
     "15": {"pixels": 24, "steps": 10, "start": 60, "every": 5, "frames": 4, "max_count": 100},
 }
 

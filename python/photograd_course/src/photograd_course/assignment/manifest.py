@@ -42,7 +42,7 @@ class Manifest:
         module: the graded module's name, without ".py".
         submission: names of the files that a submission consists of.
         prerequisites: ids of assignments that come before.
-        hours: expected work.
+        hours: of work, an estimate.
         tasks: in order.
         imports: what the graded module may import.
         vocabulary: names from the solution that students may see.

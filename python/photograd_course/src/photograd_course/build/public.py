@@ -89,7 +89,7 @@ def readme(manifest: Manifest, handout: str) -> str:
 > `photograd course questions {number}`; answers and your name go into `answers.toml`, numbers
 > to four significant digits. `photograd course submit {number}` packs the archive to hand in.
 > Green is not finished: some checks run only after you have handed in. `explore.py`, or the
-> notebook `explore.ipynb`, is for play.
+> notebook `explore.ipynb`, is for play, and makes Figure 1 with your functions.
 >
 > **A derivative is written, not computed.** No complex steps, dual numbers, finite differences or
 > code made from text in a function that returns a derivative, nor in what it calls. The grader

@@ -32,7 +32,7 @@ def syllabus(track: str, root: Path) -> dict[str, Any]:
                     "week": number,
                     "assignment": entry.id,
                     "title": entry.title,
-                    "hours": entry.hours,
+                    "estimated_hours": entry.hours,
                     "needs": ", ".join(entry.prerequisites) or "nothing",
                     "state": "ready" if entry.ready else "planned",
                 }
@@ -41,7 +41,7 @@ def syllabus(track: str, root: Path) -> dict[str, Any]:
         "track": chosen.name,
         "title": chosen.title,
         "weeks": rows,
-        "hours": sum(row["hours"] for row in rows),
+        "estimated_hours": sum(row["estimated_hours"] for row in rows),
         "ready": sum(row["state"] == "ready" for row in rows),
         "planned": sum(row["state"] == "planned" for row in rows),
     }

@@ -13,7 +13,7 @@ one_thread.use_one_thread()  # before anything below loads NumPy
 
 from .options import Option, at_least, between, existing, introduction, options, same_as  # noqa: E402
 from .other_code import by_the_core, set_constants  # noqa: E402
-from .pictures import keep_picture, show_file  # noqa: E402
+from .pictures import figure_1, keep_picture, show_file  # noqa: E402
 from .progress import Progress, count_calls  # noqa: E402
 from .reloading import watch_own_modules  # noqa: E402
 from .stopwatch import Stopwatch  # noqa: E402
@@ -27,6 +27,7 @@ __all__ = [
     "by_the_core",
     "count_calls",
     "existing",
+    "figure_1",
     "introduction",
     "keep_picture",
     "options",

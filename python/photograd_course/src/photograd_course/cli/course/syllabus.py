@@ -1,4 +1,4 @@
-"""``photograd course syllabus``: weeks, hours and what comes before what."""
+"""``photograd course syllabus``: weeks, estimated hours and what comes before what."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def register(course: typer.Typer) -> None:
 
     @course.command(
         epilog="Example: photograd course syllabus --track semester",
-        short_help="Weeks, hours and prerequisites of a track.",
+        short_help="Weeks, estimated hours and prerequisites of a track.",
     )
     def syllabus(
         track: Annotated[
@@ -23,7 +23,7 @@ def register(course: typer.Typer) -> None:
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
-        """Print the weeks of a track: assignment, hours, prerequisites, ready or planned."""
+        """Print the weeks of a track: assignment, estimated hours, prerequisites, state."""
         from ...build.syllabus import print_syllabus
 
         print_syllabus(track, as_json=as_json)
