@@ -147,10 +147,10 @@ def trained(module, views, width, marks):
 
 def normals(module, network, views, samples=64):
     """Normals (P, 3) of what each ray sees, and its opacity (P,): weighted sums over samples."""
-    near, far = views["near"], views["far"]
-    middles = near + (np.arange(samples) + 0.5) / samples * (far - near)
+    ends = views["near"], views["far"]
+    middles = ends[0] + (np.arange(samples) + 0.5) / samples * (ends[1] - ends[0])
     t = np.tile(middles, (len(views["origins"]), 1))
-    dt = np.diff(module.edges_between(t, near, far), axis=1)
+    dt = np.diff(module.edges_between(t, *ends), axis=1)
     found, opacity = np.zeros((len(t), 3)), np.zeros(len(t))
     for first in range(0, len(t), 1024):
         part = slice(first, first + 1024)
