@@ -73,5 +73,9 @@ def with_options(cell: str, changed: dict[str, int]) -> str:
     for call in (node for node in ast.walk(tree) if is_options_call(node)):
         for keyword in call.keywords:
             if keyword.arg in changed:
-                keyword.value = ast.Constant(changed[keyword.arg])
+                number = ast.Constant(changed[keyword.arg])
+                if isinstance(keyword.value, ast.Call):  # with bounds: the first is the default
+                    keyword.value.args[0] = number
+                else:
+                    keyword.value = number
     return ast.unparse(tree)
