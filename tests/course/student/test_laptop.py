@@ -40,6 +40,7 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     assert laid_out == {
         "README.md",
         "answers.toml",
+        "data/figure_1.py",
         "explore.ipynb",
         "explore.py",
         "figures/fig1_gradient.png",
