@@ -39,9 +39,9 @@ def draw(module):
     picture, photograph, far = pictures()
     gradient = module.loss_gradient(picture, photograph)
     bright, dark = picture > photograph, picture < photograph
-    found = {
+    claims = {
         "positive where the picture is too bright": (gradient[bright] > 0).all(),
         "negative where it is too dark": (gradient[dark] < 0).all(),
         "zero where both agree": (gradient[far] == 0).all() and far.sum() > 50,
     }
-    return _draw(picture, photograph, gradient), found
+    return _draw(picture, photograph, gradient), claims

@@ -46,7 +46,7 @@ def draw(module):
     ball = module.momentum(grad, START, float(tau), float(beta), n)
     size = {name: np.linalg.norm(x, axis=1) for name, x in (("fixed", fixed), ("ball", ball))}
     rate = float((size["fixed"][-1] / size["fixed"][-21]) ** (1 / 20))
-    found = {
+    claims = {
         "the steep coordinate changes sign in each step": (
             zigzag[1:, 1] * zigzag[:-1, 1] < 0.0
         ).all(),
@@ -75,4 +75,4 @@ def draw(module):
     c.semilogy(steps, size["ball"], color=BLUE)
     c.set_title("distance")
     c.set_xlabel("step k")
-    return figure, found
+    return figure, claims

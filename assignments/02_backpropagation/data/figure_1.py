@@ -161,7 +161,7 @@ def draw(module):
         if name == "∂L / ∂ texels":
             bar = place_axes(figure, 3.2, 4.0, 2.0, 0.08)
             figure.colorbar(image, cax=bar, orientation="horizontal", ticks=[-0.5, 0, 0.5])
-    found = {
+    claims = {
         "the value is 35": f.data,
         "the sum is 7 and its gradient 5": a.data == 7.0 and a.grad == 5.0,
         "x and y get 5": x.grad == 5.0 and y.grad == 5.0,
@@ -174,4 +174,4 @@ def draw(module):
         "it agrees with finite differences": picture["checked"],
         "a step against it lowers the loss": picture["fall"],
     }
-    return figure, found
+    return figure, claims

@@ -74,7 +74,7 @@ def draw(module):
     worst = np.argwhere(seen)[np.argmax(error.max(axis=1))]
     worst_to_rim = float(np.hypot(*(np.argwhere(unseen) - worst).T).min())
     samples = _mean_of_samples(uv[:3000], target[:3000], truth.shape)
-    found = {
+    claims = {
         "over 95 % of the measured values are right to 0.02": (error < 0.02).mean(),
         "the worst lies at the border of the patch": worst_to_rim,
         "some 112,000 samples": len(uv),
@@ -99,4 +99,4 @@ def draw(module):
         axes = figure.add_subplot(2, 2, k + 1)
         axes.imshow(_screen(values), interpolation="nearest")
         axes.set(xticks=[], yticks=[], title=title)
-    return figure, found
+    return figure, claims

@@ -40,7 +40,7 @@ def draw(module):
     off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
     gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
     falls = [peak[1.0, r].max() for r in roughs]
-    found = {
+    claims = {
         "each pixel of half metal is the mean of those above and below": np.max(off),
         "the metal's highlight has the base color": np.abs(gold / gold[0] - color / color[0]).max(),
         "the coating's highlight is nearly white": white[2] / white[0],
@@ -57,4 +57,4 @@ def draw(module):
             if row == 0:
                 axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
         figure.text(0.008, 0.78 - row * 0.32, f"metalness\n{m:g}", fontsize=8)
-    return figure, found
+    return figure, claims

@@ -35,7 +35,7 @@ def draw(module):
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     shade = 0.15 + 0.85 * np.abs(np.sum(normal[number] * ways, axis=1))
     shade[number < 0] = 1.0
-    found = {
+    claims = {
         "every ray leaves the ball": not inside.any() and touched.any(),
         "in the ball the sky is below": lower - upper,
         "the ring is hit": np.isfinite(t).mean(),
@@ -45,4 +45,4 @@ def draw(module):
     right.imshow(shade.reshape(down, across), cmap="gray", vmin=0, vmax=1)
     left.set(xticks=[], yticks=[], title="a ball of glass")
     right.set(xticks=[], yticks=[], title=f"{len(ring)} triangles")
-    return figure, found
+    return figure, claims

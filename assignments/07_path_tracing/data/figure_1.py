@@ -48,7 +48,7 @@ def draw(module):
         for scene in (module.demo_table(), start, module.demo_table(color, rough))
     ]
     off = np.abs(np.append(color, rough) - (0.8, 0.5, 0.2, 0.35))
-    found = {
+    claims = {
         "direct light leaves the ceiling black": direct[0, 32:64].mean(),
         "bounces light it": full[0, 44:88].mean(),
         "the recovered table looks like the truth": apart(tables[2], tables[0]),
@@ -63,4 +63,4 @@ def draw(module):
         top = 1.0 if picture is full or picture is direct else 2.0
         axes.imshow(np.clip(picture / top, 0, 1) ** GAMMA, interpolation="nearest")
         axes.set(xticks=[], yticks=[], title=name)
-    return figure, found
+    return figure, claims

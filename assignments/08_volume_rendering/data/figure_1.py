@@ -53,7 +53,7 @@ def draw(module):
     slope = module.render_adjoint(guess, *view, 2 / len(seen) * (seen - photograph))[0][..., 3]
     nowhere = ~grown(ball | ring | moon)
     lacking, excess = slope[ring], slope[moon]
-    found = {
+    claims = {
         "over 95 % of the ring's summed |derivative| is negative": -lacking[lacking < 0].sum()
         / max(np.abs(lacking).sum(), 1e-300),
         "over 95 % of the moon's summed |derivative| is positive": excess[excess > 0].sum()
@@ -76,4 +76,4 @@ def draw(module):
         axes.set(xticks=[], yticks=[], title=title)
     bar = figure.colorbar(image, ax=panels[2], ticks=[-1, 1], shrink=0.8)
     bar.set_ticklabels(["add", "remove"])
-    return figure, found
+    return figure, claims

@@ -122,7 +122,7 @@ def draw(module):
     found = watched(module, views, 36, marks)
     module.SAMPLES, module.RAYS = kept
     scores = [score(module, grid, unseen) for grid in found]
-    found = {
+    claims = {
         "the fit passes 27 dB on held-out views": scores[-1],
         "it gets better from picture to picture": (np.diff(scores[:4]) > 0).all(),
     }
@@ -143,4 +143,4 @@ def draw(module):
     for k, (steps, picture) in enumerate(zip(marks, pictures, strict=True)):
         title = f"{steps} step{'s' * (steps > 1)}"
         show(figure.add_subplot(grid[1, 3 * k : 3 * k + 3]), picture, title)
-    return figure, found
+    return figure, claims

@@ -70,7 +70,7 @@ def draw(module, photographs):
         shown.append(module.render(values, module.march(n, voxels, rays)))
         scores.append(decibels(shown[-1], truth))
         counts.append(len(voxels))
-    found = {"with dilation more than 1 dB better": scores[0] - scores[1]}
+    claims = {"with dilation more than 1 dB better": scores[0] - scores[1]}
     figure, panels = subplots(7.0, 2.65, 1, 3)
     titles = (
         "held-out photograph",
@@ -79,4 +79,4 @@ def draw(module, photographs):
     )
     for axes, colors, title in zip(panels, shown, titles, strict=True):
         show(axes, colors, title)
-    return figure, found
+    return figure, claims

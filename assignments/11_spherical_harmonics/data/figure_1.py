@@ -39,7 +39,7 @@ def draw(module, teapot):
     with rate(module, module.RATE):
         views = [seen(module, each, rays) for each in volumes]
     scores = [psnr(each, truth) for each in views]
-    found = {
+    claims = {
         "with harmonics more than 22 dB": scores[0],
         "degree 0 loses more than 0.5 dB": scores[0] - scores[1],
     }
@@ -50,4 +50,4 @@ def draw(module, teapot):
             axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2), interpolation="nearest")
             axes.set(xticks=[], yticks=[])
         row[0].set_ylabel(name)
-    return figure, found
+    return figure, claims

@@ -54,7 +54,7 @@ def draw(module):
     guess = CURVE - np.array([[1, -1.5], [1, -1], [1, 1]])
     curve, width = module.recover_stroke(stroke, guess, 1.5, 120)
     coarse = light.reshape(32, 3, 32, 3).mean(axis=(1, 3))
-    found = {
+    claims = {
         "the design has the letters": likeness(shown, target),
         "with nine times the rays as well": likeness(coarse, target),
         "the outline overlaps by 0.97 or more": overlap(module, found, picture),
@@ -80,4 +80,4 @@ def draw(module):
     axes = figure.add_subplot(grid[1, 3])
     axes.imshow(heights - heights.mean(), cmap="viridis")
     axes.set(xticks=[], yticks=[], title="the lens")
-    return figure, found
+    return figure, claims

@@ -248,24 +248,9 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     for name in ("path_tracing.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     shutil.copy(ASSIGNMENTS / "04_reflectance" / "reflectance.py", tmp_path)
-    done = subprocess.run(
-        [
-            sys.executable,
-            "explore.py",
-            "--size",
-            "12",
-            "--samples",
-            "2",
-            "--steps",
-            "20",
-            "--figure",
-            "0",
-        ],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    order = [sys.executable, "explore.py", "--size", "12", "--samples", "2", "--steps", "20"]
+    order += ["--figure", "0"]
+    done = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split("your image is ")[1].split("%")[0]) < 10
     assert float(done.stdout.split("gradient ")[1].split("%")[0]) < 40

@@ -36,17 +36,32 @@ class Option:
 
 
 def at_least(default: Value, low: float) -> Option:
-    """A number of ``low`` or more."""
+    """A number of ``low`` or more.
+
+    Args:
+        default: the value where it is not given.
+        low: the least that is taken.
+    """
     return Option(default, low)
 
 
 def between(default: Value, low: float, high: float) -> Option:
-    """A number from ``low`` to ``high``."""
+    """A number from ``low`` to ``high``.
+
+    Args:
+        default: the value where it is not given.
+        low, high: the least and the most that are taken.
+    """
     return Option(default, low, high)
 
 
 def same_as(like: str, low: float, high: float) -> Option:
-    """A number from ``low`` to ``high``; by default the value of another option."""
+    """A number from ``low`` to ``high``; by default the value of another option.
+
+    Args:
+        like: the name of the other one.
+        low, high: the least and the most that are taken.
+    """
     return Option(low, low, high, like=like)
 
 
@@ -87,7 +102,11 @@ def options(**stated: Value | Option) -> SimpleNamespace:
 
 
 def refuse(error: RangeError) -> NoReturn:
-    """End a script with the error's sentence alone; in a notebook, raise it."""
+    """End a script with the error's sentence alone; in a notebook, raise it.
+
+    Args:
+        error: what is wrong with an option.
+    """
     if kernel() is not None:
         raise error
     raise SystemExit(str(error)) from None
@@ -95,6 +114,10 @@ def refuse(error: RangeError) -> NoReturn:
 
 def parse(given: Sequence[str], known: Mapping[str, Option]) -> dict[str, Value]:
     """Values by name of ``--name value`` and ``--name=value``.
+
+    Args:
+        given: the words of the command line behind the script's name.
+        known: the options that are stated, by name.
 
     Raises:
         RangeError: an option is unknown, lacks its value, or has one that it does not take.
@@ -115,7 +138,11 @@ def parse(given: Sequence[str], known: Mapping[str, Option]) -> dict[str, Value]
 
 
 def introduction(script: str) -> str:
-    """The first cell of a script's text, its markdown, without the marks."""
+    """The first cell of a script, its markdown, without the marks.
+
+    Args:
+        script: its text.
+    """
     head = script.partition("# %% [markdown]\n")[2].partition("\n\n")[0]
     return "".join(f"{line.removeprefix('#').lstrip(' #')}\n" for line in head.splitlines())
 

@@ -23,7 +23,11 @@ def set_constants(module: ModuleType, **values: Any) -> None:
 
 
 def set_again(module: ModuleType) -> None:
-    """Replace again what `set_constants` has replaced in a module before it was reloaded."""
+    """Replace again what `set_constants` has replaced in a module before it was reloaded.
+
+    Args:
+        module: the student's, read anew.
+    """
     vars(module).update(_CHANGED.get(module.__name__, {}))
 
 

@@ -18,8 +18,8 @@ def watch_own_modules() -> None:
         return
     sys.dont_write_bytecode = True  # a file written twice in a second would be taken for its cache
     reloader = Reloader(Path.cwd())
-    shell.events.register("pre_run_cell", reloader.reload_edited)
-    shell.events.register("post_run_cell", reloader.note_new)
+    shell.events.register("pre_run_cell", lambda *_: reloader.reload_edited())
+    shell.events.register("post_run_cell", lambda *_: reloader.note_new())
 
 
 class Reloader:
@@ -30,12 +30,12 @@ class Reloader:
         self._folders = (folder.resolve(), folder.resolve() / "data")
         self._read: dict[str, tuple[int, int]] = {}
 
-    def note_new(self, *_: object) -> None:
+    def note_new(self) -> None:
         """Remember the state of the files whose modules have been loaded meanwhile."""
         for name, module in self._own().items():
             self._read.setdefault(name, _stamp(module))
 
-    def reload_edited(self, *_: object) -> None:
+    def reload_edited(self) -> None:
         """Compare all files with what was read; where one differs, reload all that are loaded.
 
         All, because one may have taken names out of another.

@@ -27,7 +27,11 @@ class Stopwatch:
         return f"{seconds:.1f} s" if seconds >= 0.1 else f"{1000 * seconds:.3g} ms"
 
     def times(self, other: Stopwatch) -> str:
-        """How many times as long as ``other`` it took, "12 times"."""
+        """How many times as long as another it took, "12 times".
+
+        Args:
+            other: what it is compared with.
+        """
         return f"{self._seconds() / max(other._seconds(), 1e-9):.3g} times"
 
     def _seconds(self) -> float:
