@@ -113,10 +113,20 @@ class RemoteStudent:
             raise StudentFailure("protocol", "the submission interfered with the worker")
         return found["value"], found["args"]
 
-    def _call(self, request: dict[str, Any], seconds: float) -> Any:
+    def watch(
+        self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
+    ) -> tuple[Any, Any]:
+        """See Student."""
+        request = {"function": function, "args": list(args), "puts": puts}
+        found = self._call(request, seconds, "watch")
+        if not isinstance(found, dict) or set(found) != {"value", "trace"}:
+            raise StudentFailure("protocol", "the submission interfered with the worker")
+        return found["value"], found["trace"]
+
+    def _call(self, request: dict[str, Any], seconds: float, kind: str = "call") -> Any:
         function = request["function"]
         name = function.rpartition(".")[2]
-        frame = self._ask("call", request, seconds, f"in {name}")
+        frame = self._ask(kind, request, seconds, f"in {name}")
         if frame.kind == "result" and not contains_function(frame.value):
             return frame.value
         if frame.kind == "raised":

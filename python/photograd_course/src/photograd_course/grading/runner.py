@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from .adjoint_watch import Remembering, find_breach
 from .battery import run_battery
 from .check import Check
 from .failures import (
@@ -19,7 +20,7 @@ from .failures import (
 )
 from .hints import find_hint
 from .outcome import Outcome, Status
-from .trial import Student, Trial
+from .trial import Breach, Student, Trial
 
 Open = Callable[[Mapping[str, Callable[..., Any]]], Student]
 OpenControl = Callable[[], Student]
@@ -106,7 +107,7 @@ def run_checks(
         outcomes.append(outcome)
         if on_outcome is not None:
             on_outcome(outcome)
-    return _without_price(checks, outcomes)
+    return _without_price(checks, _without_broken(checks, outcomes, judge.broken))
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,7 @@ class _Judge:
 
     open_student: Open
     open_control: OpenControl | None
+    broken: dict[str, Breach] = field(default_factory=dict)  # by function, seen at run time
 
     def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
         culprits = [name for name in check.needs if name in failed]
@@ -141,7 +143,7 @@ class _Judge:
     ) -> _Verdict:
         """The verdict; where the body broke, after asking whose doing that was."""
         try:
-            return _run(check, setting, lambda: self.open_student(substitutes))
+            return _run(check, setting, lambda: self.open_student(substitutes), self.broken)
         except _BodyBroke as broke:
             if self.open_control is None or not self._control_passes(check, setting):
                 return _ours(broke.error)
@@ -153,7 +155,7 @@ class _Judge:
     def _control_passes(self, check: Check, setting: Setting) -> bool:
         assert self.open_control is not None
         try:
-            return _run(check, setting, self.open_control).status is Status.PASSED
+            return _run(check, setting, self.open_control, {}).status is Status.PASSED
         except _BodyBroke:
             return False
 
@@ -166,17 +168,23 @@ class _BodyBroke(Exception):
         self.error = error
 
 
-def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
-    """What comes of one run.
+def _run(
+    check: Check, setting: Setting, open_one: OpenControl, broken: dict[str, Breach]
+) -> _Verdict:
+    """What comes of one run; derivatives that turn out to be computed are added to ``broken``.
 
     Raises:
         _BodyBroke: nothing; it has to be found out whose doing that was.
     """
     student: Student | None = None
     trial: Trial | None = None
+    remembered: Remembering | None = None
     try:
         student = open_one()
-        _require_written(check, student)
+        _require_written(check, student.breaches)
+        _require_written(check, broken)
+        if check.adjoints:
+            student = remembered = Remembering(student, check.adjoints)
         seed = (*setting.seed, *check.id.encode())
         trial = Trial(check, student, seed=seed, module=setting.module, reference=setting.reference)
         check.body(trial)
@@ -184,6 +192,9 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
             run_battery(trial, subject)
         if not trial.margins and not trial.asked:
             raise GraderFault(f"{check.id}: passed without comparing anything")
+        if remembered is not None and (breach := find_breach(remembered)) is not None:
+            broken.update(dict.fromkeys(check.adjoints, breach))
+            _require_written(check, broken)
         verdict = _Verdict(Status.PASSED)
     except CheckFailed as failure:
         hint = find_hint(setting.hints, setting.salt, check.id, failure)
@@ -214,12 +225,29 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
     return verdict
 
 
-def _require_written(check: Check, student: Student) -> None:
+def _require_written(check: Check, breaches: Mapping[str, Breach]) -> None:
     """Raise StudentFailure where a derivative that the check is about is not written."""
     for function in check.adjoints:
-        if function in student.breaches:
-            said, line = student.breaches[function]
+        if function in breaches:
+            said, line = breaches[function]
             raise StudentFailure("rule", said, line=line)
+
+
+def _without_broken(
+    checks: Sequence[Check], outcomes: Sequence[Outcome], broken: Mapping[str, Breach]
+) -> list[Outcome]:
+    """The outcomes; what passed before a derivative was seen to be computed has failed as well."""
+    found = []
+    for check, outcome in zip(checks, outcomes, strict=True):
+        said = [broken[name] for name in check.adjoints if name in broken]
+        if said and outcome.status is Status.PASSED:
+            text, line = said[0]
+            details = {**outcome.details, "line": list(line)}
+            lost = replace(outcome, status=Status.FAILED, points=0.0, reason="rule", text=text)
+            found.append(replace(lost, details=details))
+        else:
+            found.append(outcome)
+    return found
 
 
 def _without_price(checks: Sequence[Check], outcomes: Sequence[Outcome]) -> list[Outcome]:

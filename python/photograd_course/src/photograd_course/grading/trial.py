@@ -42,6 +42,14 @@ class Student(Protocol):
             layout: of the arrays, a name in `worker.layouts.LAYOUTS`.
         """
 
+    def watch(
+        self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
+    ) -> tuple[Any, Any] | None:
+        """The value in code with probes, and what these saw (`worker.adjoint_trace`).
+
+        None where nothing is watched; raises StudentFailure where no value comes.
+        """
+
     def cpu_seconds(self) -> float | None:
         """Processor time used so far, measured from outside; None where that is not possible."""
 

@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from .adjoint_rule import breaches
+from .adjoint_watch import Watch
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
@@ -38,12 +39,16 @@ def main() -> None:
     modules = load_modules(channel, load)
     if modules is None:
         return
+    watch = Watch(load["sources"], load["substitutes"])
     while True:
         try:
             request = channel.receive()
         except EOFError:
             return
-        answer(channel, modules, request.value, list(load["sources"]))
+        if request.kind == "watch":
+            answer_watched(channel, watch, request.value)
+        else:
+            answer(channel, modules, request.value, list(load["sources"]))
 
 
 def apply(policy: Any, channel: Channel) -> list[str]:
@@ -107,6 +112,15 @@ def answer(
         channel.send("result", value)
     except FrameError as error:
         channel.send("unsendable", str(error))
+
+
+def answer_watched(channel: Channel, watch: Watch, request: dict[str, Any]) -> None:
+    """Call one function in code with probes, and send the value with what they saw."""
+    try:
+        value, trace = watch.run(request["function"], request["args"], request["puts"])
+        channel.send("result", {"value": value, "trace": trace})
+    except BaseException as error:
+        channel.send("raised", describe(error, []))
 
 
 def describe(error: BaseException, own: list[str]) -> dict[str, Any]:

@@ -14,8 +14,12 @@ import numpy as np
 PROGRAM = (
     "__init__.py",
     "__main__.py",
+    "adjoint_probes.py",
     "adjoint_rule.py",
+    "adjoint_trace.py",
+    "adjoint_types.py",
     "adjoint_values.py",
+    "adjoint_watch.py",
     "boot.py",
     "channel.py",
     "codec.py",
