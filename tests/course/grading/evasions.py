@@ -210,11 +210,12 @@ DUAL = {
         """,
     ),
     "polynomials of the library": (
-        "p = [f(np.poly1d([1.0, each])) for each in x.ravel()]\n"
-        "return np.array([each.coeffs[-2] if each.order else 0.0 for each in p]).reshape(x.shape)",
+        "there = np.empty(x.shape, object)\nfor k in np.ndindex(x.shape):\n"
+        "    there[k] = np.poly1d([1.0, x[k]])\n"
+        "return np.array([each.deriv()(0.0) for each in f(there).ravel()]).reshape(x.shape)",
         "",
     ),
-    "polynomials of the library in an array of objects": (
+    "polynomials of the newer library": (
         "P = np.polynomial.Polynomial\nthere = np.empty(x.shape, object)\n"
         "for k in np.ndindex(x.shape):\n    there[k] = P([x[k], 1.0])\nup = f(there)\n"
         "return np.array([each.deriv()(0.0) for each in up.ravel()]).reshape(x.shape)",

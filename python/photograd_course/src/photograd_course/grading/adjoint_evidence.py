@@ -19,6 +19,8 @@ VANISHED = 1e-3  # of its size before
 SHARE = 0.2  # of the numbers in a column of the answer that must change
 MOST = 0.6  # the same, where copies far from their bases have been put back
 TINY, FELT = 3e-4, 0.1  # shifts this small, relative, do not change a right number by so much
+FARTHEST = 0.9  # relative: of a multiple that a contour round a number may reach
+FITTED = 0.5  # the same, of places for a fit
 WIDEST = 16  # an answer with more columns is looked at as a whole
 Array = np.ndarray[Any, np.dtype[Any]]
 
@@ -88,11 +90,13 @@ def stages(values: Array, kinds: Kinds) -> Iterator[Stage]:
     tiny = close.within(TINY, values).of(kinds.inputs, values)
     if len(tiny.member):
         yield _plain(tiny, SHARE, FELT)
-    many = kinds.additive.many(values).joined(kinds.relative.many(values))
+    # A number far from its multiple is another one: 1j x, of complex numbers that turn.
+    multiples = kinds.relative.within(FARTHEST, values).many(values)
+    many = kinds.additive.many(values).joined(multiples)
     turned = many.only(np.isin(many.base, many.base[values[many.member].imag != 0]))
     if len(turned.member):
         yield _plain(close.joined(turned), MOST, 1 - VANISHED)
-    fitted = many.within(0.5, values).many(values)
+    fitted = many.within(FITTED, values).many(values)
     if len(fitted.member):
         copies = fitted.joined(close)
         yield replace(_plain(copies, MOST, 1 - VANISHED), offsets=_offsets(copies, values))

@@ -7,9 +7,10 @@ expression is the target of is left alone: it is looked at where it is read next
 from __future__ import annotations
 
 import ast
+import os
 from types import CodeType
 
-PROBE = "__probe_9d41c7__"
+PROBE = f"__probe_{os.urandom(8).hex()}__"  # a submission cannot know it beforehand
 WRAPPED = (
     ast.Name,
     ast.Attribute,

@@ -15,7 +15,7 @@ import numpy as np
 from .adjoint_probes import Place
 from .adjoint_types import dual, overloads, payload
 
-MOST_NUMBERS = 400_000
+MOST_NUMBERS = 150_000
 SIMPLE = frozenset(
     (bool, int, str, bytes, list, tuple, dict, set, frozenset, type(None), range, slice)
 )
@@ -126,8 +126,8 @@ class Trace:
         """What was recorded, with the places of the probes.
 
         Returns:
-            "places", "sizes", "re" and "im" of the records; "types" that carry derivatives, with the
-            first place of each; "lines" and "file_of" of all probes, and the names of the "files".
+            "places", "sizes", "re" and "im" of the records; "types" that carry derivatives, each
+            with its first place; "lines" and "file_of" of all probes, and the "files" by name.
         """
         files = list(dict.fromkeys(file for file, _, _ in self._all))
         flat = np.concatenate([np.zeros(0), *self._kept])
