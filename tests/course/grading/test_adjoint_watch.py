@@ -1,7 +1,7 @@
 """Derivatives that are computed lose their points at run time; those that are written keep all.
 
-The ways and the targets are in `evasions`, unusual right styles in `right_styles`. One assignment
-meets every way in each run; the others do with the mark `exhaustive`.
+The ways are in `evasions`, the targets in `evasion_targets`, right styles in `right_styles`. One
+assignment meets every way in each run; the others do with the mark `exhaustive`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from photograd_course.grading.check import Check
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.worker.adjoint_rule import breaches
 
-from course.grading.evasions import COMPLEX, DUAL, REAL, TARGETS, evasion
+from course.grading.evasion_targets import TARGETS, evasion
+from course.grading.evasions import COMPLEX, DUAL, REAL
 from course.grading.right_styles import STYLES, with_style
 from support.watched import ASSIGNMENTS, judged, read_bundle
 

@@ -42,7 +42,7 @@ class Stage:
     felt: float
 
     def only(self, chosen: Array) -> Stage:
-        """The stage with some of its copies."""
+        """The stage with those copies that are ``chosen``."""
         copies = Copies(self.copies.member[chosen], self.copies.base[chosen])
         return replace(self, copies=copies, offsets=tuple(each[chosen] for each in self.offsets))
 
@@ -159,7 +159,7 @@ def puts_back(run: Seen, copies: Copies, offset: Array) -> dict[str, Array]:
 
 
 def changes(before: Any, after: Any, stage: Stage) -> list[Change]:
-    """The columns of an answer of which too much has changed, by the stage's measure."""
+    """The columns of which, from ``before`` to ``after``, more has changed than ``stage`` allows."""
     theirs = dict(_columns(after, ()))
     found = []
     for part, column in _columns(before, ()):

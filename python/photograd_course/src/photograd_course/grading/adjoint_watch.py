@@ -66,7 +66,7 @@ class Remembering:
         return self.student.breaches
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
-        """See Student."""
+        """See Student for function, args and seconds."""
         module, _, name = function.rpartition(".")
         if name not in self.functions and module != "adapters":
             return self.student.call(function, args, seconds=seconds)
@@ -79,13 +79,13 @@ class Remembering:
     def look(
         self, function: str, args: Sequence[Any], *, seconds: float, layout: str
     ) -> tuple[Any, Any]:
-        """See Student."""
+        """See Student for function, args, seconds and layout."""
         return self.student.look(function, args, seconds=seconds, layout=layout)
 
     def watch(
         self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
     ) -> tuple[Any, Any] | None:
-        """See Student."""
+        """See Student for function, args, puts and seconds."""
         return self.student.watch(function, args, puts, seconds=seconds)
 
     def cpu_seconds(self) -> float | None:
@@ -102,6 +102,9 @@ def find_breach(remembered: Remembering) -> Breach | None:
 
     What cannot be watched (too many numbers, an exception, another answer than before) is no
     evidence.
+
+    Args:
+        remembered: the student of a check that has passed.
     """
     watched = 0
     for call in _chosen(remembered.calls)[:TRIES]:

@@ -116,7 +116,7 @@ class RemoteStudent:
     def watch(
         self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
     ) -> tuple[Any, Any]:
-        """See Student."""
+        """See Student for function, args, puts and seconds."""
         request = {"function": function, "args": list(args), "puts": puts}
         found = self._call(request, seconds, "watch")
         if not isinstance(found, dict) or set(found) != {"value", "trace"}:

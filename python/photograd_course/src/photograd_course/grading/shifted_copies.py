@@ -41,7 +41,7 @@ class Seen:
 
     @classmethod
     def of(cls, frame: Mapping[str, Any]) -> Seen:
-        """From a frame of the worker; raises ValueError where it is none."""
+        """From a ``frame`` of the worker; raises ValueError where it is none."""
         places, sizes = (np.asarray(frame[name], np.int64) for name in ("places", "sizes"))
         values = np.asarray(frame["re"], float) + 1j * np.asarray(frame["im"], float)
         if places.shape != sizes.shape or places.ndim != 1 or values.shape != (sizes.sum(),):
@@ -54,11 +54,11 @@ class Seen:
         return np.cumsum(self.sizes) - self.sizes
 
     def record_of(self, index: Array) -> Array:
-        """The records in which numbers are."""
+        """The records in which the numbers at ``index`` are."""
         return np.searchsorted(np.cumsum(self.sizes), index, side="right")
 
     def at(self, other: Seen) -> Array:
-        """The values of the records of another run; NaN where this run has none like it."""
+        """The values of the records of ``other``, a run; NaN where this run has none like it."""
         if np.array_equal(self.places, other.places) and np.array_equal(self.sizes, other.sizes):
             return self.values
         heads = zip(self.places, self.turns, self.sizes, self.starts, strict=True)
@@ -94,16 +94,16 @@ class Copies:
     base: Array
 
     def within(self, bound: float, values: Array) -> Copies:
-        """Those whose distance to their base is at most so much of it."""
+        """Those whose distance to their base, in ``values``, is at most ``bound`` of it."""
         x, y = values[self.member], values[self.base]
         return self.only(np.abs(x - y) <= bound * np.abs(y))
 
     def close(self, values: Array) -> Copies:
-        """Those that lie close to their base."""
+        """Those that lie close to their base in ``values``."""
         return self.within(SMALL, values)
 
     def many(self, values: Array) -> Copies:
-        """Those of numbers of which there are many different copies, as for a fit."""
+        """Those of which ``values`` hold many different copies of one number, as for a fit."""
         offset = values[self.member] - values[self.base]
         order = np.lexsort((offset.imag, offset.real, self.base))
         base, sorted_offset = self.base[order], offset[order]
@@ -114,11 +114,11 @@ class Copies:
         return self.only(np.isin(self.base, bases[counts >= MANY]))
 
     def of(self, inputs: Array, values: Array) -> Copies:
-        """Those of the numbers that the arguments hold."""
+        """Those whose base, in ``values``, is one of ``inputs``: what the arguments hold."""
         return self.only(np.isin(values[self.base], inputs))
 
     def joined(self, other: Copies) -> Copies:
-        """Both; of what is in both, what the first says, and its bases stay what they are."""
+        """These and ``other``; of what is in both, what these say. Their bases are not put back."""
         more = ~np.isin(other.member, self.member) & ~np.isin(other.member, self.base)
         member = np.concatenate([self.member, other.member[more]])
         base = np.concatenate([self.base, other.base[more]])
@@ -126,7 +126,7 @@ class Copies:
         return Copies(member[order], base[order])
 
     def only(self, chosen: Array) -> Copies:
-        """Some of them."""
+        """Those that are ``chosen``."""
         return Copies(self.member[chosen], self.base[chosen])
 
 
@@ -167,7 +167,11 @@ def shifted(run: Seen, moved: tuple[Seen, Seen]) -> Copies:
 
 
 def scaled(run: Seen, moved: tuple[Seen, Seen]) -> Copies:
-    """Numbers that change in the same proportion as an earlier one: x (1 + h); as `shifted`."""
+    """Numbers that change in the same proportion as an earlier one: x (1 + h).
+
+    Args:
+        run, moved: as for `shifted`.
+    """
     m = _moving(run, moved)
     first, second = m.first / m.value, m.second / m.value
     label = _groups((first.real, second.real), np.full(len(m.index), 8 * EPS))

@@ -48,6 +48,10 @@ class Student(Protocol):
         """The value in code with probes, and what these saw (`worker.adjoint_trace`).
 
         None where nothing is watched; raises StudentFailure where no value comes.
+
+        Args:
+            function, args, seconds: as for `call`.
+            puts: what is put back, as `adjoint_evidence.puts_back` makes it, or None.
         """
 
     def cpu_seconds(self) -> float | None:

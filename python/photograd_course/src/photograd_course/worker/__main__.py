@@ -115,7 +115,7 @@ def answer(
 
 
 def answer_watched(channel: Channel, watch: Watch, request: dict[str, Any]) -> None:
-    """Call one function in code with probes, and send the value with what they saw."""
+    """Call the function of ``request`` in ``watch`` and send, by ``channel``, value and trace."""
     try:
         value, trace = watch.run(request["function"], request["args"], request["puts"])
         channel.send("result", {"value": value, "trace": trace})

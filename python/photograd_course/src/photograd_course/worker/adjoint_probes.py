@@ -45,7 +45,7 @@ class _Wrapper(ast.NodeTransformer):
         self._file, self._places = file, places
 
     def visit(self, node: ast.AST) -> ast.AST:
-        """Wrap what is read; leave targets, annotations and decorators."""
+        """Wrap what is read in ``node``; leave targets, annotations and decorators."""
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             return self._function(node)
         if isinstance(node, ast.ClassDef):

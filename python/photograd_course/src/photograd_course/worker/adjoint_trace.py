@@ -50,7 +50,7 @@ class Trace:
         self._types: dict[int, str] = {}
 
     def __call__(self, place: int, value: Any) -> Any:
-        """The value, after a look at it."""
+        """The ``value``, after a look at it for the probe at ``place``."""
         kind = type(value)
         if kind in SIMPLE:
             return value

@@ -18,7 +18,7 @@ NUMBERS = (float, complex, np.inexact)
 
 
 def overloads(value: Any) -> bool:
-    """Whether a value has arithmetic of its own: neither Python's numbers nor NumPy's arrays."""
+    """Whether ``value`` has arithmetic of its own: neither Python's numbers nor NumPy's arrays."""
     kind = type(value)
     if isinstance(value, np.ndarray):
         return kind.__module__.split(".")[0] != "numpy"
@@ -44,7 +44,7 @@ def dual(value: Any) -> str:
 
 
 def payload(value: Any) -> np.ndarray[Any, np.dtype[Any]]:
-    """The numbers in such a value, flat; whether they depend on the inputs decides."""
+    """The numbers in such a ``value``, flat; whether they depend on the inputs decides."""
     coefficients = getattr(value, "coef", None)
     parts = [value, coefficients] if coefficients is not None else [value, *_parts(value)]
     found = [np.zeros(0, np.complex128)]

@@ -36,7 +36,7 @@ class Watch:
     def run(
         self, function: str, args: list[Any], puts: Mapping[str, Any] | None
     ) -> tuple[Any, dict[str, Any]]:
-        """The value of one call, and what its probes saw; see `Trace` for ``puts``."""
+        """The value of ``function(*args)``, and what its probes saw; see `Trace` for ``puts``."""
         for name in self._sources if not self._codes else ():
             self._codes[name] = instrumented(self._sources[name], f"{name}.py", self.places)
         kept = {name: sys.modules.pop(name) for name in self._sources if name in sys.modules}
@@ -68,5 +68,5 @@ class _Compiled(SourceFinder):
         self._codes = codes
 
     def get_code(self, fullname: str) -> CodeType:
-        """The compiled module."""
+        """The compiled module ``fullname``."""
         return self._codes[fullname]
