@@ -159,7 +159,7 @@ def puts_back(run: Seen, copies: Copies, offset: Array) -> dict[str, Array]:
 
 
 def changes(before: Any, after: Any, stage: Stage) -> list[Change]:
-    """The columns of which, from ``before`` to ``after``, more has changed than ``stage`` allows."""
+    """The columns of which, from ``before`` to ``after``, too much has changed for ``stage``."""
     theirs = dict(_columns(after, ()))
     found = []
     for part, column in _columns(before, ()):
