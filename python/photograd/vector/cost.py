@@ -96,11 +96,12 @@ def _steps(edges: FloatArray, height: int, allowed: float) -> float:
     waiting = np.zeros(0, np.int64)
     for y in range(height):
         waiting = np.concatenate([waiting[end[waiting] > y], np.arange(first[y], first[y + 1])])
-        count = len(waiting)
+        count, everyone = len(waiting), float(times[waiting].sum())
         top, bottom, left, right = edges[:, waiting]
         heights = np.minimum(bottom, y + 1) - np.maximum(top, y)
         side_by_side = float((heights * times[waiting]).sum())
         pairs = float(np.searchsorted(np.sort(left), right, "right").sum())
+        total += everyone * everyone  # they are brought into an order
         total += (2 * count + pairs - count * (count + 1) / 2) * max(side_by_side, 1.0)
         if total > allowed:
             break
