@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -25,6 +26,10 @@ def pytest_configure(config: pytest.Config) -> None:
         from support.costs import Costs
 
         config.pluginmanager.register(Costs(Path(os.environ[COSTS])))
+    # Under nohup SIGHUP is ignored, and processes that tests start would inherit that. A handler
+    # of our own lets this process go on, and gives them the default.
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

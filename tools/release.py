@@ -90,7 +90,8 @@ def contents(manifests: list[Manifest]) -> str:
     rows = "\n".join(
         f"| {m.id} | [{m.title}]({m.folder_name}.html) | {m.hours:g} |" for m in manifests
     )
-    page = handout_page(f"# Handouts\n\n| | assignment | hours |\n| --- | --- | --- |\n{rows}\n")
+    head = "# Handouts\n\n| | assignment | hours (estimated) |\n| --- | --- | --- |"
+    page = handout_page(f"{head}\n{rows}\n")
     return page.replace("<title>Handouts", f"<title>{escape('Handouts of photograd')}")
 
 

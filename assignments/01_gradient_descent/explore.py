@@ -3,31 +3,31 @@
 #
 # Nothing here is graded. Each cell uses your own `descent.py`; a cell whose function is not written
 # yet stops with the name of the task. Change numbers, run again. The whole script takes seconds.
+# `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
-from pathlib import Path
+from photograd_course import explore
+
+given = explore.options(figure=explore.between(1, 0, 1))
+
+import importlib
 
 import descent
-import matplotlib as mpl
 import numpy as np
-
-if __name__ == "__main__" and "get_ipython" not in globals():
-    mpl.use("Agg")  # as a script: figures go to files
-import matplotlib.pyplot as plt
-
-OUT = Path("explore")
-OUT.mkdir(exist_ok=True)
+from matplotlib.figure import Figure
 
 
-def keep(name, xlabel="", ylabel="", legend=False):
-    """Label and save the current figure, and show it in a notebook."""
-    plt.xlabel(xlabel)
-    plt.ylabel(ylabel)
+def plot():
+    """Axes of a new figure."""
+    return Figure(layout="constrained").subplots()
+
+
+def keep(axes, name, xlabel="", ylabel="", legend=False):
+    """Label and save a figure, and show it in a notebook."""
+    axes.set(xlabel=xlabel, ylabel=ylabel)
     if legend:
-        plt.legend()
-    plt.tight_layout()
-    plt.savefig(OUT / f"{name}.png", dpi=110)
-    plt.show() if "get_ipython" in globals() else plt.close()
+        axes.legend()
+    explore.keep_picture(axes.figure, f"explore/{name}.png", 110)
 
 
 # %% [markdown]
@@ -38,8 +38,9 @@ def keep(name, xlabel="", ylabel="", legend=False):
 eps = 10.0 ** np.arange(-13.0, 0.0, 0.5)
 point = np.array([0.7])
 found = [descent.numeric_derivative(lambda y: float(np.sin(y[0])), point, e)[0] for e in eps]
-plt.loglog(eps, np.abs(np.array(found) - np.cos(0.7)), "o-")
-keep("differences", "eps", "error")
+axes = plot()
+axes.loglog(eps, np.abs(np.array(found) - np.cos(0.7)), "o-")
+keep(axes, "differences", "eps", "error")
 
 # %% [markdown]
 # ## 2. Two local minima
@@ -59,17 +60,17 @@ def df(x):
 
 
 starts = np.linspace(-1.9, 1.9, 381)
-taus = (0.05, 0.15, 0.2)
+taus, axes = (0.05, 0.15, 0.2), plot()
 for row, tau in enumerate(taus):
     with np.errstate(all="ignore"):
         ends = np.array([descent.gd_1d(f, df, float(x0), tau, 80)[0][-1] for x0 in starts])
     for side, color in ((ends < 0.0, "C0"), (ends > 0.0, "C1")):
-        plt.plot(starts[side], np.full(side.sum(), row), "|", ms=25, color=color)
+        axes.plot(starts[side], np.full(side.sum(), row), "|", ms=25, color=color)
     borders = np.count_nonzero(np.diff(ends[np.isfinite(ends)] > 0.0))
     print(f"tau = {tau}: {borders} borders, {np.count_nonzero(~np.isfinite(ends))} starts diverge")
-plt.ylim(-0.6, len(taus) - 0.4)
-plt.yticks(range(len(taus)), [f"tau = {tau}" for tau in taus])
-keep("basins", "start; blue: ends on the left, orange: on the right")
+axes.set(ylim=(-0.6, len(taus) - 0.4), yticks=range(len(taus)))
+axes.set_yticklabels([f"tau = {tau}" for tau in taus])
+keep(axes, "basins", "start; blue: ends on the left, orange: on the right")
 
 # %% [markdown]
 # ## 3. Zig-zag, and momentum
@@ -91,11 +92,12 @@ def quadratic(steep):
 def contours(walks, name):
     """Contours of the quadratic, with some runs."""
     x, y = np.meshgrid(np.linspace(-2.3, 1.0, 150), np.linspace(-1.0, 1.0, 100))
-    plt.contour(x, y, 0.5 * (x**2 + kappa * y**2), levels=np.geomspace(0.02, 15, 10), colors="0.8")
+    axes = plot()
+    axes.contour(x, y, 0.5 * (x**2 + kappa * y**2), levels=np.geomspace(0.02, 15, 10), colors="0.8")
     for label, walk in walks.items():
-        plt.plot(*walk.T, "o-", ms=3, lw=1, label=label)
-    plt.axis((-2.3, 1.0, -1.0, 1.0))
-    keep(name, legend=True)
+        axes.plot(*walk.T, "o-", ms=3, lw=1, label=label)
+    axes.axis((-2.3, 1.0, -1.0, 1.0))
+    keep(axes, name, legend=True)
 
 
 bowl, slope = quadratic(kappa)
@@ -121,13 +123,14 @@ contours(
 # %%
 turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
 plain = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), 300)[0]
+axes = plot()
 for label, walk in (
     ("Adam", descent.adam(slope, start, 0.05, 300)),
     ("Adam, rotated", descent.adam(lambda x: turn @ slope(turn.T @ x), turn @ start, 0.05, 300)),
     ("gradient descent, best learning rate", plain),
 ):
-    plt.semilogy(np.linalg.norm(walk, axis=1), label=label)
-keep("adam", "step", "distance", legend=True)
+    axes.semilogy(np.linalg.norm(walk, axis=1), label=label)
+keep(axes, "adam", "step", "distance", legend=True)
 
 # %% [markdown]
 # ## 5. Backtracking line search
@@ -153,6 +156,15 @@ for _ in range(300):
     tau = descent.backtracking(valley, valley_slope, x, d, 2.0 * tau)
     x = x + d * tau
     chosen.append(tau)
-plt.semilogy(chosen, ".")
-plt.title(f"ends at ({x[0]:.4f}, {x[1]:.4f})")
-keep("line_search", "step", "tau")
+axes = plot()
+axes.semilogy(chosen, ".")
+axes.set_title(f"ends at ({x[0]:.4f}, {x[1]:.4f})")
+keep(axes, "line_search", "step", "tau")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, descent)

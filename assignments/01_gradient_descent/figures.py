@@ -5,31 +5,18 @@
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
-from photograd_course.viz.handout import Fact, figures_of, subplots
-from photograd_course.viz.style import BLUE, GRAY, GUIDE, INK, ORANGE, plain_axes
+from photograd_course.build.kit_module import kit_module
+from photograd_course.viz.handout import Fact, figures_of
+from photograd_course.viz.style import BLUE, GRAY, GUIDE, INK, ORANGE
 from photograd_course.viz.style import RED as CRIMSON
 
+FIGURE_1 = kit_module("01_gradient_descent", "figure_1")
+BOWL = FIGURE_1.BOWL
+START = FIGURE_1.START
+_panels = FIGURE_1._panels
+_bowl = FIGURE_1._bowl
+
 PURPLE = "#542788"
-BOWL = np.array([1.0, 20.0])  # curvatures: condition number 20
-START = np.array([-2.0, 0.55])
-
-
-def _panels(height, *widths):
-    """A figure, and its panels of relative widths side by side."""
-    figure, panels = subplots(7.0, height, 1, len(widths), width_ratios=widths, squeeze=False)
-    for each in panels[0]:
-        plain_axes(each)
-    return figure, panels[0]
-
-
-def _bowl(axes, title):
-    """Contours of the quadratic of Figures 1 and 5, and its minimum."""
-    x, y = np.meshgrid(np.linspace(-2.25, 1.0, 160), np.linspace(-1.1, 1.1, 120))
-    level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
-    axes.contour(x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8)
-    axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
-    axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate", title=title)
-    axes.grid(visible=False)
 
 
 def _slope(x, y):
@@ -38,57 +25,35 @@ def _slope(x, y):
 
 def fig1_zigzag(module):
     """An ill-conditioned quadratic: zig-zag, best learning rate, momentum."""
-
-    def f(x):
-        return float(0.5 * x @ (BOWL * x))
-
-    def grad(x):
-        return BOWL * x
-
-    n, best = 40, 2.0 / 21.0
-    zigzag = module.gd_nd(f, grad, START, 1.9 / 20.0, n)[0]
-    fixed = module.gd_nd(f, grad, START, best, n)[0]
-    wrong = module.gd_nd(f, grad, START, 2.02 / 20.0, n)
-    root = np.sqrt(BOWL)
-    tau, beta = 4.0 / root.sum() ** 2, ((root[1] - root[0]) / root.sum()) ** 2
-    ball = module.momentum(grad, START, float(tau), float(beta), n)
-    size = {name: np.linalg.norm(x, axis=1) for name, x in (("fixed", fixed), ("ball", ball))}
-    rate = float((size["fixed"][-1] / size["fixed"][-21]) ** (1 / 20))
+    figure, found = FIGURE_1.draw(module)
     facts = {
         "the steep coordinate changes sign in each step": Fact(
-            (zigzag[1:, 1] * zigzag[:-1, 1] < 0.0).all(), red="unit_steps"
+            found["the steep coordinate changes sign in each step"], red="unit_steps"
         ),
-        "the flat one converges from one side": Fact((zigzag[:, 0] < 0.0).all(), red="unit_steps"),
+        "the flat one converges from one side": Fact(
+            found["the flat one converges from one side"], red="unit_steps"
+        ),
         "the factor per step is 19/21 within 2 %": Fact(
-            rate * 21.0 / 19.0, 0.98, 1.02, red="aliased_trail"
+            found["the factor per step is 19/21 within 2 %"], 0.98, 1.02, red="aliased_trail"
         ),
-        "just above the bound it diverges": Fact(wrong[2], red="unit_steps"),
+        "just above the bound it diverges": Fact(
+            found["just above the bound it diverges"], red="unit_steps"
+        ),
         "after 40 steps momentum is sixty thousand times nearer": Fact(
-            size["fixed"][-1] / size["ball"][-1], 5.5e4, 6.5e4, red="forgets_velocity"
+            found["after 40 steps momentum is sixty thousand times nearer"],
+            5.5e4,
+            6.5e4,
+            red="forgets_velocity",
         ),
-        "tau is 0.134": Fact(tau, 0.1335, 0.1345, held="chosen by the figure"),
-        "beta is 0.403": Fact(beta, 0.4025, 0.4035, held="chosen by the figure"),
+        "tau is 0.134": Fact(found["tau is 0.134"], 0.1335, 0.1345, held="chosen by the figure"),
+        "beta is 0.403": Fact(found["beta is 0.403"], 0.4025, 0.4035, held="chosen by the figure"),
         "the roots of Eq. (15) coincide for both curvatures": Fact(
-            np.abs((1.0 + beta - tau * BOWL) ** 2 - 4.0 * beta).max(),
+            found["the roots of Eq. (15) coincide for both curvatures"],
             0.0,
             1e-12,
             held="follows from tau and beta",
         ),
     }
-    figure, (a, b, c) = _panels(2.9, 2.0, 2.0, 1.1)
-    for axes, walk, color, mark, title in (
-        (a, fixed, ORANGE, "s", "constant 2 / (1 + 20)"),
-        (b, ball, BLUE, "o", "momentum, β = 0.403"),
-    ):
-        _bowl(axes, title)
-        axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
-    a.set_ylabel("steep coordinate")
-    b.tick_params(labelleft=False)
-    steps = np.arange(n + 1)
-    c.semilogy(steps, size["fixed"], color=ORANGE)
-    c.semilogy(steps, size["ball"], color=BLUE)
-    c.set_title("distance")
-    c.set_xlabel("step k")
     return figure, facts
 
 

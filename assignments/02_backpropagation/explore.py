@@ -1,20 +1,21 @@
 # %% [markdown]
 # # Play with your engine
 #
-# Nothing here is graded. Run the whole file, or cell by cell in an editor that knows `# %%`.
-# It needs a finished `engine.py`, takes some ten seconds, and writes two pictures beside itself.
+# Nothing here is graded. Run the whole file, or cell by cell in an editor that knows `# %%`. It
+# needs a finished `engine.py`, takes some ten seconds, and writes two pictures. `--hinges`,
+# `--steps` and `--rate` are those of the network. `--figure 0` leaves out Figure 1 of the handout,
+# at the end.
 
 # %%
-from pathlib import Path
+from photograd_course import explore
 
-import matplotlib as mpl
+given = explore.options(hinges=8, steps=200, rate=0.35, figure=explore.between(1, 0, 1))
+
+import importlib
+
+import engine
 import numpy as np
-
-mpl.use("Agg")
-from engine import Value, backward, grad_check, value_and_gradient
 from matplotlib.figure import Figure
-
-HERE = Path(__file__).parent if "__file__" in globals() else Path()
 
 # %% [markdown]
 # ## 1. Is your gradient right?
@@ -29,8 +30,8 @@ def formula(v):
 
 
 place = np.array([1.3, 0.7, 0.4])
-print("value and gradient:", value_and_gradient(formula, place))
-print("grad_check:", grad_check(lambda x: value_and_gradient(formula, x), place))
+print("value and gradient:", engine.value_and_gradient(formula, place))
+print("grad_check:", engine.grad_check(lambda x: engine.value_and_gradient(formula, x), place))
 
 # %% [markdown]
 # ## 2. A gradient is an image
@@ -50,12 +51,12 @@ wanted = np.where(heart, 0.85, 0.15)
 
 def picture_loss(texels):
     """The squared error, and its derivative with respect to each texel."""
-    leaves = np.array([Value(number) for number in texels.flat]).reshape(texels.shape)
+    leaves = np.array([engine.Value(number) for number in texels.flat]).reshape(texels.shape)
     left, middle, right = (
         np.pad(leaves, ((0, 0), (1, 1)), "edge")[:, k : k + 20] for k in range(3)
     )
     total = np.sum((0.25 * left + 0.5 * middle + 0.25 * right - wanted) ** 2)
-    backward(total)
+    engine.backward(total)
     return total.data, np.array([leaf.grad for leaf in leaves.flat]).reshape(texels.shape)
 
 
@@ -76,33 +77,33 @@ for k, (number, picture, slopes) in enumerate(shown):
     above.set_title(f"texels after {number} steps")
     below.imshow(slopes, cmap="RdBu_r", vmin=-top, vmax=top)
     below.set_title("derivative of the loss")
-figure.savefig(HERE / "explore_picture.png", dpi=110)
+explore.keep_picture(figure, "explore_picture.png", 110)
 
 # %% [markdown]
 # ## 3. A neural network of 25 parameters, trained on a curve
 #
-# A weighted sum of eight ReLUs, max(0, w x + b). Try three, or a larger learning rate.
+# A weighted sum of eight ReLUs, max(0, w x + b). Try `--hinges 3`, or a larger `--rate`.
 
 # %%
-HINGES, STEPS, LENGTH = 8, 200, 0.35
 xs = np.linspace(-1, 1, 21)
 ys = np.sin(3 * xs) * 0.5
 rng = np.random.default_rng(2)
-weights, offsets = rng.choice([-1.0, 1.0], HINGES), rng.uniform(-0.8, 0.8, HINGES)
-parameters = np.concatenate([weights, offsets, rng.normal(0, 0.3, HINGES), [0.0]])
+hinges = given.hinges
+weights, offsets = rng.choice([-1.0, 1.0], hinges), rng.uniform(-0.8, 0.8, hinges)
+parameters = np.concatenate([weights, offsets, rng.normal(0, 0.3, hinges), [0.0]])
 
 
 def network(p, x):
     """The network at one number x; p are numbers or Values."""
-    out = p[3 * HINGES]
-    for k in range(HINGES):
-        out = out + p[2 * HINGES + k] * (p[k] * float(x) + p[HINGES + k]).maximum(0.0)
+    out = p[3 * hinges]
+    for k in range(hinges):
+        out = out + p[2 * hinges + k] * (p[k] * float(x) + p[hinges + k]).maximum(0.0)
     return out
 
 
 def misfit(p):
     """The mean squared error over all samples."""
-    total = Value(0.0)
+    total = engine.Value(0.0)
     for x, y in zip(xs, ys, strict=True):
         total = total + (network(p, x) - float(y)) ** 2
     return total * (1.0 / len(xs))
@@ -110,20 +111,30 @@ def misfit(p):
 
 curves = [parameters.copy()]
 losses = []
-for number in range(STEPS):
-    loss, slopes = value_and_gradient(misfit, parameters)
+progress = explore.Progress("network", given.steps)
+for number in range(given.steps):
+    loss, slopes = engine.value_and_gradient(misfit, parameters)
+    progress.step()
     losses.append(loss)
-    parameters = parameters - LENGTH * slopes
-    if number in {9, STEPS - 1}:
+    parameters = parameters - given.rate * slopes
+    if number in {9, given.steps - 1}:
         curves.append(parameters.copy())
 print(f"loss {losses[0]:.4f} -> {losses[-1]:.5f}")
 
 figure = Figure(figsize=(9, 3.2), layout="constrained")
 left, right = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
 left.plot(xs, ys, "k.", label="samples")
-for p, name in zip(curves, ("start", "10 steps", f"{STEPS} steps"), strict=True):
-    left.plot(xs, [network([Value(number) for number in p], x).data for x in xs], label=name)
+for p, name in zip(curves, ("start", "10 steps", f"{given.steps} steps"), strict=False):
+    left.plot(xs, [network([engine.Value(each) for each in p], x).data for x in xs], label=name)
 left.legend()
 right.semilogy(losses)
 right.set(xlabel="step", ylabel="loss")
-figure.savefig(HERE / "explore_network.png", dpi=110)
+explore.keep_picture(figure, "explore_network.png", 110)
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, engine)

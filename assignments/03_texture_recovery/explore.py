@@ -4,25 +4,32 @@
 # that is installed. Never graded. Run it as `python explore.py`, with your own image as `python
 # explore.py --image FILE`; `--size`, `--samples` (per texel) and `--steps` change the amount of
 # work. `--fine 4` measures an image with four times as many rows and columns as the recovered
-# texture: its edges then lie inside texels.
+# texture: its edges then lie inside texels. `--figure 0` leaves out Figure 1 of the handout, at the
+# end.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    image=explore.existing(),
+    size=explore.at_least(96, 2),
+    samples=explore.at_least(16.0, 0.1),
+    steps=40,
+    fine=1,
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
 import sys
-import time
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import texture_recovery as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import by_the_core, option
 from PIL import Image
 
-size = int(option("size", 96))
-samples_per_texel = float(option("samples", 16))
-steps = max(1, int(option("steps", 40)))
-fine = int(option("fine", 1))
+size, samples_per_texel, steps, fine = given.size, given.samples, given.steps, given.fine
 
 
 # %% [markdown]
@@ -45,7 +52,7 @@ def hills(n):
 
 def photograph():
     """(image, its origin); linear values (H, W, 3)."""
-    if file := option("image", ""):
+    if file := given.image:
         picture, origin = Image.open(file, formats=("PNG", "JPEG")).convert("RGB"), file
     elif find_spec("skimage") is not None:
         data = importlib.import_module("skimage.data")
@@ -70,12 +77,12 @@ print(f"image: {origin}, {truth.shape[1]} x {truth.shape[0]}, measured {len(plac
 
 # %%
 beginning = np.full(truth.shape, 0.5)
-before = time.perf_counter()
+watch = explore.Stopwatch()
 found, history, unknown = mine.recover_texture(beginning, places, measured, steps)
-seconds = time.perf_counter() - before
+watch.stop()
 error = np.mean((found - truth)[~unknown] ** 2)
 decibels = -10 * np.log10(error)
-print(f"yours: {steps} steps in {seconds:.2f} s, {decibels:.1f} dB, {unknown.sum()} texels unseen")
+print(f"yours: {steps} steps in {watch}, {decibels:.1f} dB, {unknown.sum()} texels unseen")
 print(f"loss:  {history[0]:.3g} at the start, {history[-1]:.3g} at the end")
 
 # %% [markdown]
@@ -90,15 +97,15 @@ try:
     leaves = [engine.Value(number) for number in rng.random(24)]
     grid, spots = np.array(leaves).reshape(4, 6, 1), rng.random((60, 2))
     g = rng.normal(size=(60, 1))
-    before = time.perf_counter()
+    graph_watch = explore.Stopwatch()
     engine.backward(np.sum(g * mine.bilinear_sample(grid, spots)))
-    graph_seconds = time.perf_counter() - before
+    graph_watch.stop()
     by_graph = np.array([leaf.grad for leaf in leaves])
-    before = time.perf_counter()
+    hand_watch = explore.Stopwatch()
     by_hand = mine.bilinear_sample_adjoint((4, 6), spots, g).ravel()
-    graph_seconds /= time.perf_counter() - before
+    slower = graph_watch.times(hand_watch.stop())
     off = np.abs(by_graph - by_hand).max()
-    print(f"02:    its gradient is {off:.1e} from your adjoint, {graph_seconds:.0f} times as slow")
+    print(f"02:    its gradient is {off:.1e} from your adjoint, {slower} as slow")
 except (ImportError, NotImplementedError):
     print("02:    no finished engine.py here or in the folder of assignment 02")
 except TypeError:
@@ -126,15 +133,15 @@ if slow.any() and rows * columns > 1:
 # ## The C++ core on the same samples
 
 # %%
-core = by_the_core(lambda: importlib.import_module("photograd.textures"))
+core = explore.by_the_core(lambda: importlib.import_module("photograd.textures"))
 if core is not None:
-    before = time.perf_counter()
+    core_watch = explore.Stopwatch()
     result = core.recover(places, measured, truth.shape[:2], steps=steps)
-    core_seconds = time.perf_counter() - before
+    core_watch.stop()
     core_error = np.mean((result.texture - truth)[~unknown] ** 2)
     print(
-        f"core:  {steps} steps in {core_seconds:.2f} s, {-10 * np.log10(core_error):.1f} dB: "
-        f"{seconds / core_seconds:.0f} times as fast"
+        f"core:  {steps} steps in {core_watch}, {-10 * np.log10(core_error):.1f} dB: "
+        f"{watch.times(core_watch)} as fast"
     )
 
 # %% [markdown]
@@ -176,5 +183,13 @@ for k, (title, values, top) in enumerate(shown):
 axes = figure.add_subplot(2, 4, 8)
 axes.semilogy(history)
 axes.set(title="loss", xlabel="step")
-figure.savefig("recovered.png", dpi=110)
+explore.keep_picture(figure, "recovered.png", 110)
 print("recovered.png: the texture, the first gradient beside the error, the residual")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

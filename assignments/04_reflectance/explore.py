@@ -5,19 +5,30 @@
 # how much the core's image differs from yours. Never graded. Run it as `python explore.py`;
 # `--roughness` and `--metalness` change the ball, `--start` the initial roughness of the fit,
 # `--pixels` and `--steps` the amount of work. The metalness is known, unless `--start-metalness`
-# says from where the fit starts to look for it.
+# says from where the fit starts to look for it. `--figure 0` leaves out Figure 1 of the handout, at
+# the end.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    pixels=explore.at_least(64, 4),
+    steps=60,
+    roughness=explore.between(0.35, 0.045, 1),
+    metalness=explore.between(0.0, 0, 1),
+    start=explore.between(0.7, 0.045, 1),
+    start_metalness=explore.same_as("metalness", 0.0, 1),
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
 
 import numpy as np
 import reflectance as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import by_the_core, option
 
-pixels, steps = option("pixels", 64), option("steps", 60)
-rough, metal_share = option("roughness", 0.35), option("metalness", 0.0)
-start, start_metal = option("start", 0.7), option("start-metalness", metal_share)
+pixels, steps, rough, start = given.pixels, given.steps, given.roughness, given.start
+metal_share, start_metal = given.metalness, given.start_metalness
 COLOR = np.array([0.75, 0.3, 0.1])
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
 
@@ -70,7 +81,7 @@ print(f"ball: {scene[0].sum()} pixels, roughness {rough:g}, metalness {metal_sha
 target = picture(scene, COLOR, metal_share, rough, mine.gltf)
 x = np.array([0.5, 0.5, 0.5, start, start_metal])
 first, second = np.zeros(5), np.zeros(5)
-trail = [x]
+trail, progress = [x], explore.Progress("fit", steps)
 for k in range(1, steps + 1):
     error = picture(scene, x[:3], x[4], x[3], mine.gltf) - target
     d_color, slope_metal, slope_rough, _ = pulled(scene, x[:3], x[4], x[3], 2 * error / error.size)
@@ -79,6 +90,7 @@ for k in range(1, steps + 1):
     x = x - 0.03 * first / (1 - 0.9**k) / (np.sqrt(second / (1 - 0.99**k)) + 1e-12)
     x = np.clip(x, [0, 0, 0, 0.045, 0], 1)
     trail.append(x)
+    progress.step()
 trail = np.array(trail)
 for name, (*color, r, m) in {"fit": x, "truth": [*COLOR, rough, metal_share]}.items():
     print(f"{name}: roughness {r:.3f}, color {np.round(color, 3)}, metalness {m:.3f}")
@@ -95,7 +107,7 @@ for r in (0.5, 0.75, 1.0):
     print(
         f"GGX with F = 1, roughness {r:g}: albedo {np.round(mirrors[:, 0], 4)} at cosines {views}"
     )
-core = by_the_core(lambda: importlib.import_module("photograd.bsdf").registry()["gltf"])
+core = explore.by_the_core(lambda: importlib.import_module("photograd.bsdf").registry()["gltf"])
 if core is not None:
 
     def core_gltf(wo, wi, base_color, metalness, roughness):
@@ -149,5 +161,13 @@ wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
 wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(wo), 1))
 axes.semilogy(np.degrees(angle), mine.ggx_lobe(wo, wi, np.full(len(wo), rough)))
 axes.set(xlabel="viewer, degrees", title="lobe, light from −45°")
-figure.savefig("reflectance.png", dpi=100)
+explore.keep_picture(figure, "reflectance.png")
 print("reflectance.png: chart, derivative with respect to roughness, fit, lobe")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

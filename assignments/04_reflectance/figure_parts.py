@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.handout import Array, note
 from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE
 from photograd_course.viz.style import RED as CRIMSON
 
-LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
+FIGURE_1 = kit_module("04_reflectance", "figure_1")
+LIGHTS = FIGURE_1.LIGHTS
+unit = FIGURE_1.unit
+
 TILT = np.radians(24)  # from which the hemisphere is seen
-
-
-def unit(v) -> Array:
-    """A vector of length 1."""
-    return np.array(v) / np.linalg.norm(v)
 
 
 def toward(degrees: float) -> Array:
@@ -126,21 +125,6 @@ def even(rng, n):
     z, phi = rng.random(n), 2 * np.pi * rng.random(n)
     s = np.sqrt(1 - z * z)
     return np.stack([s * np.cos(phi), s * np.sin(phi), z], axis=1)
-
-
-def ball(module, size, color, m, r):
-    """Radiance (size, size, 3) of a ball under three lights; NaN beside it."""
-    inside, frame = module.ball(size)
-    wo = frame[:, :, 2]
-    n = len(wo)
-    total = 0
-    for place, strength in LIGHTS:
-        wi = frame @ unit(place)
-        f = module.gltf(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r))
-        total = total + f * np.clip(wi[:, 2:], 0, None) * np.pi * strength
-    image = np.full((size, size, 3), np.nan)
-    image[inside] = total
-    return image
 
 
 def draw_light_at_an_angle(axes: Axes) -> None:

@@ -7,7 +7,6 @@ import figure_parts as parts
 import numpy as np
 from figure_parts import arrow, toward
 from matplotlib.colors import SymLogNorm
-from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
 from photograd_course.viz.handout import Fact, figures_of, note, subplots
@@ -17,42 +16,27 @@ from photograd_course.viz.style import RED as CRIMSON
 
 def fig1_chart(module):
     """Balls of the material: roughness to the right, metalness downward."""
-    color = np.array([0.9, 0.45, 0.12])
-    roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
-    size = 139
-    balls = {(m, r): parts.ball(module, size, color, m, r) for m in metals for r in roughs}
-    peak = {
-        key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
-        for key, ball in balls.items()
-    }
-    off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
-    gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
-    falls = [peak[1.0, r].max() for r in roughs]
+    figure, found = parts.FIGURE_1.draw(module)
     facts = {
         "each pixel of half metal is the mean of those above and below": Fact(
-            np.max(off), 0, 1e-12, red="gltf_premixed"
+            found["each pixel of half metal is the mean of those above and below"],
+            0,
+            1e-12,
+            red="gltf_premixed",
         ),
         "the metal's highlight has the base color": Fact(
-            np.abs(gold / gold[0] - color / color[0]).max(), 0, 0.05, red="gltf_metalness_reversed"
+            found["the metal's highlight has the base color"],
+            0,
+            0.05,
+            red="gltf_metalness_reversed",
         ),
         "the coating's highlight is nearly white": Fact(
-            white[2] / white[0], 0.75, 1.0, red="gltf_tinted_varnish"
+            found["the coating's highlight is nearly white"], 0.75, 1.0, red="gltf_tinted_varnish"
         ),
         "the metal's highlight gets darker to the right": Fact(
-            (np.diff(falls) < 0).all(), red="lobe_no_masking"
+            found["the metal's highlight gets darker to the right"], red="lobe_no_masking"
         ),
     }
-    figure = Figure(figsize=(7.0, 4.15))
-    for row, m in enumerate(metals):
-        for column, r in enumerate(roughs):
-            axes = figure.add_axes((0.087 + column * 0.183, 0.645 - row * 0.32, 0.181, 0.31))
-            picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
-            # Fewer levels make a smaller file.
-            axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
-            axes.set_axis_off()
-            if row == 0:
-                axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
-        figure.text(0.008, 0.78 - row * 0.32, f"metalness\n{m:g}", fontsize=8)
     return figure, facts
 
 

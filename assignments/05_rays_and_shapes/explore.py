@@ -2,21 +2,28 @@
 # # Rays and their closest hits
 # Renders three images with your functions: a ring of triangles and the cost of each pixel; a ball
 # of glass over a floor; a sphere-traced ball and its derivative with respect to the radius. Where
-# the C++ core is installed, Embree's results stand beside yours. Never graded.
-# `python explore.py` takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the
-# glass) and `--rays` (to compare with the core).
+# the C++ core is installed, Embree's results stand beside yours. Never graded. `python explore.py`
+# takes `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays`
+# (to compare with the core). `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    triangles=256,
+    size=explore.at_least(64, 4),
+    eta=explore.between(1.5, 0.1, 10),
+    rays=2000,
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
-import time
 
 import numpy as np
 import rays as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import by_the_core, option
 
-triangles, size = option("triangles", 256), option("size", 64)
-eta, count = option("eta", 1.5), option("rays", 2000)
+triangles, size, eta, count = given.triangles, given.size, given.eta, given.rays
 
 # %% [markdown]
 # ## A camera
@@ -39,6 +46,7 @@ def look(corners, origins, ways):
     boxes, first, many, order = mine.build_bvh(corners.min(axis=1), corners.max(axis=1))
     t, number = np.zeros(len(origins)), np.zeros(len(origins), int)
     cost = np.zeros((2, len(origins)), int)
+    progress = explore.Progress("rays", len(origins))
     for r, (o, d) in enumerate(zip(origins, ways, strict=True)):
 
         def box(node, r=r):
@@ -50,17 +58,17 @@ def look(corners, origins, ways):
             return mine.hit_triangle(o, d, corners[primitives])[0]
 
         t[r], number[r] = mine.traverse(first, many, order, box, intersect, o, d)
+        progress.step()
     return t, number, *cost
 
 
 turns = max(4, round(triangles**0.5 / 2) * 2)
 corners = mine.ring(turns, max(3, triangles // (2 * turns)))
-before = time.perf_counter()
+watch = explore.Stopwatch()
 t, number, asked, met = look(corners, origins, ways)
-seconds = time.perf_counter() - before
 print(
     f"{len(corners)} triangles, {len(ways)} pixels: {asked.mean():.1f} boxes and "
-    f"{met.mean():.1f} triangles for each, {seconds:.1f} s"
+    f"{met.mean():.1f} triangles for each, {watch}"
 )
 a, b, c = np.moveaxis(corners, 1, 0)
 normals = np.cross(b - a, c - a)
@@ -125,7 +133,7 @@ print(f"sphere tracing: your derivative is {worst:.1e} from finite differences o
 
 # %%
 rng = np.random.default_rng(7)
-meshes = by_the_core(lambda: importlib.import_module("photograd.geometry.mesh"))
+meshes = explore.by_the_core(lambda: importlib.import_module("photograd.geometry.mesh"))
 if meshes is not None:
     faces = np.arange(3 * len(corners)).reshape(-1, 3)
     tree = meshes.Bvh(meshes.Mesh(corners.reshape(-1, 3).astype(np.float32), faces))
@@ -159,5 +167,13 @@ drawn = axes[1, 1].imshow(d_t.reshape(shape), cmap="RdBu", vmin=-4, vmax=4)
 figure.colorbar(drawn, ax=axes[1, 1], label="∂t / ∂ left radius", shrink=0.8)
 for each in axes.flat:
     each.set(xticks=[], yticks=[])
-figure.savefig("seen.png", dpi=110)
+explore.keep_picture(figure, "seen.png", 110)
 print("wrote seen.png")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

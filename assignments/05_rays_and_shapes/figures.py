@@ -8,56 +8,24 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, subplots
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
+FIGURE_1 = kit_module("05_rays_and_shapes", "figure_1")
+_ring_rays = FIGURE_1._ring_rays
+
 
 def fig1_images(module: ModuleType) -> tuple[Figure, Facts]:
     """A ball of glass over a floor, and a ring of triangles, by your functions."""
-    width, height, radius = 300, 216, 1.2
-    level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
-    center = np.array([0.0, 0.3, 0.0])
-    place, way = module.camera_rays(width, height, 210.0, 210.0, width / 2, height / 2, level)
-    inside, touched = np.zeros(len(way), bool), np.zeros(len(way), bool)
-    for bounce in range(4):
-        t = module.hit_sphere(place, way, center, radius)
-        on = np.isfinite(t) & (inside | (bounce == 0))
-        place[on] += t[on, None] * way[on]
-        way[on], through = module.refract(way[on], (place[on] - center) / radius, 1.5)
-        inside[on] ^= through
-        touched |= on
-    glass = np.clip(module.floor_and_sky(place, way), 0, 1).reshape(height, width, 3)
-    blue = (glass[..., 2] - glass[..., 0]).reshape(2, -1)
-    upper, lower = (blue[k, half].mean() for k, half in enumerate(touched.reshape(2, -1)))
-    ring, across, down = module.ring(24, 12), 120, 86
-    origins, ways = _ring_rays(module, across, down, 80.0)
-    t, number = module.trace_mesh(ring, origins, ways)
-    a, b, c = np.moveaxis(ring, 1, 0)
-    normal = np.cross(b - a, c - a)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    shade = 0.15 + 0.85 * np.abs(np.sum(normal[number] * ways, axis=1))
-    shade[number < 0] = 1.0
+    figure, found = FIGURE_1.draw(module)
     facts: Facts = {
-        "every ray leaves the ball": Fact(not inside.any() and touched.any()),
-        "in the ball the sky is below": Fact(lower - upper, 0.2, 1.0),
-        "the ring is hit": Fact(np.isfinite(t).mean(), 0.2, 0.8),
+        "every ray leaves the ball": Fact(found["every ray leaves the ball"]),
+        "in the ball the sky is below": Fact(found["in the ball the sky is below"], 0.2, 1.0),
+        "the ring is hit": Fact(found["the ring is hit"], 0.2, 0.8),
     }
-    figure, (left, right) = subplots(7.0, 2.75, 1, 2)
-    left.imshow(np.round(glass * 40) / 40)
-    right.imshow(shade.reshape(down, across), cmap="gray", vmin=0, vmax=1)
-    left.set(xticks=[], yticks=[], title="a ball of glass")
-    right.set(xticks=[], yticks=[], title=f"{len(ring)} triangles")
     return figure, facts
-
-
-def _ring_rays(module: ModuleType, width: int, height: int, focal: float) -> tuple[Array, Array]:
-    """Rays of a camera above the ring that looks down."""
-    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
-    rays: tuple[Array, Array] = module.camera_rays(
-        width, height, focal, focal, width / 2, height / 2, pose
-    )
-    return rays
 
 
 def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:

@@ -3,7 +3,9 @@
 import functools
 
 import numpy as np
+from photograd_course.build.kit_module import kit_module
 
+large = kit_module("06_real_time_frame", "frame").large
 H, W = 72, 116  # pixels of the small frames
 START, TUNED = np.array([0.5, 1.0, 1.0]), np.array([1.6, 0.3, 2.8])
 TONES = np.array([0.2, 2.5])
@@ -133,17 +135,6 @@ def rms(a, b, where=None):
 def developed(module, radiance):
     """(H, W, 3) as files store it."""
     return module.develop(radiance, TONES)
-
-
-def large(module, height, width, side):
-    """A picture of side x side samples a pixel, averaged where it is still linear."""
-    frame = module.render(side * height, side * width, TUNED, rings=11, size=512, samples=4)
-    radiance, cells = frame["radiance"], (height, side, width, side, 3)
-    coarse = radiance.reshape(cells).mean(axis=(1, 3))
-    spread = module.bloom(coarse, 2.0, width / 50, 0.6) - coarse
-    lens = np.maximum(radiance + np.repeat(np.repeat(spread, side, axis=0), side, axis=1), 0)
-    shown = np.clip(module.tone_map(lens, TONES, np.zeros_like(lens))[0], 0, 1)
-    return module.encode(shown.reshape(cells).mean(axis=(1, 3)))
 
 
 def show(axes, picture, title, **options):

@@ -29,7 +29,9 @@ def fig1_frame(module):
         ),
     }
     whole = all(fact.holds for fact in facts.values())
-    picture = parts.large(module, 330, 528, 2) if whole else shown
+    picture = (
+        parts.large(module, 330, 528, 2, parts.TUNED, parts.TONES, rings=11) if whole else shown
+    )
     figure = Figure(figsize=(7.0, 3.0))
     axes = parts.place(figure, (0, 0, 528, 330))
     axes.imshow(np.round(picture * 90) / 90, interpolation="nearest", aspect="auto")

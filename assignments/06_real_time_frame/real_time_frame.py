@@ -81,7 +81,8 @@ def rasterize(corners: Corners, height: int, width: int) -> tuple[Faces, Weights
 
     Args:
         corners: (F, 3, 3), of each triangle its corners, and of each its (x, y, depth) in the
-            picture; x and y are multiples of 1/256 pixel, depths above 0. Either winding.
+            picture; x and y are multiples of 1/256 pixel, depths above 0. Either winding; F may
+            be 0.
         height, width: of the picture, in pixels.
 
     Returns:

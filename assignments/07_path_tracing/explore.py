@@ -5,21 +5,29 @@
 # they are computed anew. Never graded. `python explore.py` takes `--size` (pixels across),
 # `--depth`, `--samples` (per pixel, of the room), `--steps` (of the fit) and `--roughness` (of the
 # table; the stored results are for 0.35, and with another value your own image is fitted).
+# `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
-import sys
-import time
+from photograd_course import explore
+
+given = explore.options(
+    size=48,
+    depth=5,
+    samples=16,
+    steps=45,
+    roughness=explore.between(0.35, 0.045, 1),
+    figure=explore.between(1, 0, 1),
+)
+
+import importlib
 
 import numpy as np
 import path_tracing as mine
 from matplotlib.figure import Figure
 from photograd_course.core_light import core_light
-from photograd_course.explore import by_the_core, option
 
-size, depth, samples = option("size", 48), option("depth", 5), option("samples", 16)
-steps, roughness = option("steps", 45), option("roughness", 0.35)
-if min(size, depth, samples, steps) < 1 or not 0.045 <= roughness <= 1:
-    sys.exit("explore.py: size, depth, samples and steps are 1 or more, roughness is 0.045 to 1")
+size, depth, samples = given.size, given.depth, given.samples
+steps, roughness = given.steps, given.roughness
 rng = np.random.default_rng(0)
 
 # %% [markdown]
@@ -29,20 +37,20 @@ rng = np.random.default_rng(0)
 width, height = size, size * 5 // 6
 room = mine.demo_room()
 origins, directions = mine.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
-before = time.perf_counter()
+watch, progress = explore.Stopwatch(), explore.Progress("room", samples)
 total, squares = np.zeros((height * width, 3)), np.zeros((height * width, 3))
 for _ in range(samples):
     seen = mine.trace_paths(room, origins, directions, depth, rng)
     total += seen
     squares += seen**2
+    progress.step()
 picture = total / samples
 # The variance of the samples of a pixel estimates the noise of their mean; it takes two samples.
 spread = (squares - samples * picture**2).mean() / max(samples - 1, 1)
 noise = np.sqrt(max(spread, 0) / samples) / max(picture.mean(), 1e-9)
 said = f"noise {noise:.0%}" if samples > 1 else "noise unknown (take 2 samples or more)"
 print(
-    f"room:  depth {depth}, {samples} samples a pixel, mean {picture.mean():.3f}, {said}, "
-    f"{time.perf_counter() - before:.1f} s"
+    f"room:  depth {depth}, {samples} samples a pixel, mean {picture.mean():.3f}, {said}, {watch}"
 )
 
 # %% [markdown]
@@ -72,7 +80,7 @@ def apart(a, b):
 
 
 target, whose = table, "your own"
-core, like_stored = by_the_core(lambda: core_light(truth, *rays, on)), roughness == 0.35
+core, like_stored = explore.by_the_core(lambda: core_light(truth, *rays, on)), roughness == 0.35
 if core is not None:
     target, whose, their_slope = core[0], "the core's", core[1].reshape(7, 10)
     told = (
@@ -96,13 +104,14 @@ if whose == "the core's":
 
 # %%
 start = mine.demo_table((0.5, 0.5, 0.5), 0.6)
-before = time.perf_counter()
-color, rough, track = mine.recover(start, 0, *rays, target, steps, rng)
+watch = explore.Stopwatch()
+with explore.count_calls("fit", steps, mine, "direct_light_backward"):
+    color, rough, track = mine.recover(start, 0, *rays, target, steps, rng)
 goal = np.array([0.8, 0.5, 0.2, roughness])
 told = f"; the core found {found[:3].round(3)}, {found[3]:.3f}" if like_stored else ""
 print(
     f"fit:   to {whose} image, base color {color.round(3)}, roughness {rough:.3f} in {steps} "
-    f"steps, {time.perf_counter() - before:.1f} s{told}; it is 0.8, 0.5, 0.2 and {roughness:g}"
+    f"steps, {watch}{told}; it is 0.8, 0.5, 0.2 and {roughness:g}"
 )
 
 # %% [markdown]
@@ -128,5 +137,13 @@ axes[1, 0].plot(track)
 for k in range(4):
     axes[1, 0].axhline(goal[k], color=f"C{k}", linestyle=":")
 axes[1, 0].set(title="fit; dotted: the truth", ylim=(0, 1), xlabel="step")
-figure.savefig("traced.png", dpi=110)
+explore.keep_picture(figure, "traced.png", 110)
 print("wrote traced.png")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

@@ -6,35 +6,16 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.axes import Axes
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.handout import Array, note
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE
 
+FIGURE_1 = kit_module("07_path_tracing", "figure_1")
+table_rays = FIGURE_1.table_rays
+table = FIGURE_1.table
+apart = FIGURE_1.apart
+
 UP = np.array([0.0, 1.0, 0.0])
-
-
-def room(module: ModuleType, width: int, height: int, depth: int, samples: int) -> Array:
-    """The image (height, width, 3) of `demo_room` by so many paths for each pixel."""
-    rays = module.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
-    total, rng = np.zeros((height * width, 3)), np.random.default_rng(4)
-    for _ in range(samples):
-        total += module.trace_paths(module.demo_room(), *rays, depth, rng)
-    return (total / samples).reshape(height, width, 3)
-
-
-def table_rays(module: ModuleType, width: int, height: int) -> tuple:
-    """The rays of `module.table_rays()`, for an image of other sizes."""
-    return module.camera_rays(width, height, [0, 0.9, 1.2], [0, 0, -0.3], 45)
-
-
-def table(module: ModuleType, scene: dict, size: tuple, rng: object, times: int = 1) -> Array:
-    """Direct light on the table, an image of `size` = (width, height), black beside the table."""
-    hit = module.closest_hit(scene, *table_rays(module, *size))
-    on, each = hit["primitive"] == 0, module.SIDE**2
-    many, seen = module.repeated(module.take(hit, on), each), np.zeros((len(on), 3))
-    for _ in range(times):
-        u = module.strata(rng, on.sum()), module.strata(rng, on.sum())
-        seen[on] += module.direct_light(scene, many, *u).reshape(-1, each, 3).mean(axis=1) / times
-    return seen.reshape(*size[::-1], 3)
 
 
 def table_derivatives(module: ModuleType, size: tuple, rng: object) -> tuple[Array, Array]:
@@ -188,7 +169,3 @@ def descent(module: ModuleType, shared: bool) -> Array:
         scene["base_color"][0] = np.clip(scene["base_color"][0] - 0.15 * slope[0].mean(), 0, 1)
         track.append(scene["base_color"][0, 0])
     return np.array(track)
-
-
-def apart(a: Array, b: Array) -> float:
-    return float(np.linalg.norm(a - b) / np.linalg.norm(b))

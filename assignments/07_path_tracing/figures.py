@@ -12,38 +12,24 @@ from photograd_course.viz.handout import Array, Fact, Facts, figures_of, note, s
 from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
-GAMMA = 1 / 2.2
+GAMMA = parts.FIGURE_1.GAMMA
 
 
 def fig1_result(module: ModuleType) -> tuple[Figure, Facts]:
     """A room with all bounces and with direct light; a table, and what was recovered of it."""
-    full, direct = parts.room(module, 132, 110, 5, 40), parts.room(module, 96, 80, 2, 16)
-    target = module.core_answers()[0].reshape(70, 3)
-    start = module.demo_table((0.5, 0.5, 0.5), 0.6)
-    rng = np.random.default_rng(7)
-    color, rough, _ = module.recover(start, 0, *module.table_rays(), target, 45, rng)
-    tables = [
-        parts.table(module, scene, (60, 42), rng, 6)
-        for scene in (module.demo_table(), start, module.demo_table(color, rough))
-    ]
-    off = np.abs(np.append(color, rough) - (0.8, 0.5, 0.2, 0.35))
+    figure, found = parts.FIGURE_1.draw(module)
     facts: Facts = {
-        "direct light leaves the ceiling black": Fact(direct[0, 32:64].mean(), 0.0, 1e-9),
-        "bounces light it": Fact(full[0, 44:88].mean(), 0.02, 1.0),
-        "the recovered table looks like the truth": Fact(
-            parts.apart(tables[2], tables[0]), 0.0, 0.1
+        "direct light leaves the ceiling black": Fact(
+            found["direct light leaves the ceiling black"], 0.0, 1e-9
         ),
-        "and has its numbers within 0.02": Fact(off.max(), 0.0, 0.02),
+        "bounces light it": Fact(found["bounces light it"], 0.02, 1.0),
+        "the recovered table looks like the truth": Fact(
+            found["the recovered table looks like the truth"], 0.0, 0.1
+        ),
+        "and has its numbers within 0.02": Fact(
+            found["and has its numbers within 0.02"], 0.0, 0.02
+        ),
     }
-    figure = Figure(figsize=(7.0, 4.3), layout="constrained")
-    grid = figure.add_gridspec(2, 4, width_ratios=(1.45, 1.45, 1, 1), height_ratios=(1.45, 1))
-    places = (grid[:, :2], grid[0, 2:], grid[1, 2], grid[1, 3])
-    names = ("a room, by your path tracer", "direct light alone", "a table: first guess", "found")
-    for place, name, picture in zip(places, names, (full, direct, *tables[1:]), strict=True):
-        axes = figure.add_subplot(place)
-        top = 1.0 if picture is full or picture is direct else 2.0
-        axes.imshow(np.clip(picture / top, 0, 1) ** GAMMA, interpolation="nearest")
-        axes.set(xticks=[], yticks=[], title=name)
     return figure, facts
 
 

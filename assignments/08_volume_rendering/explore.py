@@ -4,10 +4,24 @@
 # next to the C++ core where that is installed. Never graded. `python explore.py` takes `--steps`,
 # `--thick` (a factor for extinctions), `--size` (pixels per side) and `--capture DIR`: a folder
 # with `transforms.json` and its images. For a capture, `--box` is the extent of the box from the
-# origin, `--voxels` its resolution, and `--views` the number of images to use.
+# origin, `--voxels` its resolution, and `--views` the number of images to use. `--figure 0` leaves
+# out Figure 1 of the handout, at the end.
 
 # %%
-import time
+from photograd_course import explore
+
+given = explore.options(
+    steps=48,
+    thick=explore.at_least(1.0, 0),
+    size=explore.at_least(48, 2),
+    capture=explore.existing(),
+    box=explore.at_least(1.0, 1e-6),
+    voxels=32,
+    views=8,
+    figure=explore.between(1, 0, 1),
+)
+
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +29,8 @@ import volume_rendering as mine
 from matplotlib.figure import Figure
 from photograd_course.captures import read_capture
 from photograd_course.core_volume import core_volume
-from photograd_course.explore import by_the_core, option
 
-steps = max(1, int(option("steps", 48)))
-thick = float(option("thick", 1))
-size = max(2, int(option("size", 48)))
-capture = option("capture", "")
+steps, thick, size, capture = given.steps, given.thick, given.size, given.capture
 
 
 # %% [markdown]
@@ -61,7 +71,7 @@ bottom.plot(middle, slope[0], color="black", label="your derivative")
 bottom.plot(middle, differences, "o", color="tab:orange", markersize=3, label="finite differences")
 bottom.set(title="∂ pixel / ∂ extinction", xlabel="m")
 bottom.legend()
-figure.savefig("ray.png", dpi=100)
+explore.keep_picture(figure, "ray.png")
 
 
 # %% [markdown]
@@ -95,15 +105,16 @@ looks = np.tile([0.0, 0.0, -1.0], (size**2, 1))
 backdrop = np.array([0.1, 0.1, 0.15])
 rays = (low, high, eyes, looks, steps, backdrop)
 photograph = mine.render_rays(truth, *rays)
-before = time.perf_counter()
+both, forward = explore.Stopwatch(), explore.Stopwatch()
 picture = mine.render_rays(guess, *rays)
-forward = time.perf_counter() - before
+forward.stop()
 d_picture = 2 / len(picture) * (picture - photograph)
-before = time.perf_counter()
+backward = explore.Stopwatch()
 d_guess, _ = mine.render_adjoint(guess, *rays, d_picture)
-backward = time.perf_counter() - before
+backward.stop()
+both.stop()
 loss = np.sum((picture - photograph) ** 2) / len(picture)
-print(f"volume: {size} x {size} pixels in {forward:.2f} s, the adjoint in {backward:.2f} s")
+print(f"volume: {size} x {size} pixels in {forward}, the adjoint in {backward}")
 print(f"        loss {loss:.4f}; one step against the gradient, extinctions clamped to 0, gives:")
 for length in (1, 10, 100):
     moved = guess - length * d_guess
@@ -117,18 +128,18 @@ for length in (1, 10, 100):
 
 # %%
 def of_the_core():
-    """(its derivative, seconds of its two passes)."""
+    """(its derivative, the time of its two passes)."""
     _, adjoint = core_volume()
-    started = time.perf_counter()
-    return adjoint(guess, *rays, d_picture)[0], time.perf_counter() - started
+    watch = explore.Stopwatch()
+    return adjoint(guess, *rays, d_picture)[0], watch.stop()
 
 
-core = by_the_core(of_the_core)
+core = explore.by_the_core(of_the_core)
 if core is not None:
     gap = np.linalg.norm(core[0] - d_guess) / np.linalg.norm(core[0])
     print(
-        f"core:   both passes in {core[1]:.4f} s, {(forward + backward) / core[1]:.0f} "
-        f"times as fast; its derivative is {gap:.1e} from yours"
+        f"core:   both passes in {core[1]}, {both.times(core[1])} as fast; "
+        f"its derivative is {gap:.1e} from yours"
     )
 
 
@@ -154,7 +165,7 @@ signed(panels[2], d_guess[..., 3], end, "your ∂L/∂σ")
 panels[2].set_xlabel("blue: add, red: remove")
 if core is not None:
     signed(panels[3], core[0][..., 3], end, "the core's, on the same scale")
-figure.savefig("volume.png", dpi=100)
+explore.keep_picture(figure, "volume.png")
 print("ray.png, volume.png: look at them")
 
 
@@ -168,20 +179,28 @@ print("ray.png, volume.png: look at them")
 
 # %%
 if capture:
-    reach, n = float(option("box", 1.0)), int(option("voxels", 32))
+    reach, n = given.box, given.voxels
     corner = np.full(3, reach)
     gray = np.full((n, n, n, 4), 0.5)
     gray[..., 3] = 0.1 * thick / reach
     total, count = np.zeros(gray.shape), 0
-    for photo in read_capture(Path(capture), size, option("views", 8)):
-        given = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
-        wrong = mine.render_rays(gray, *given) - photo.colors.reshape(-1, 3)
-        total += mine.render_adjoint(gray, *given, 2 * wrong / len(wrong))[0]
+    for photo in read_capture(Path(capture), size, given.views):
+        asked = (-corner, corner, *photo.rays(), steps, photo.border.mean(axis=0))
+        wrong = mine.render_rays(gray, *asked) - photo.colors.reshape(-1, 3)
+        total += mine.render_adjoint(gray, *asked, 2 * wrong / len(wrong))[0]
         count += 1
     titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")
     figure = Figure(figsize=(10, 4), layout="constrained")
     for axes, axis in zip(figure.subplots(1, 3), range(3), strict=True):
         flat = np.moveaxis(total[..., 3], axis, 2)
         signed(axes, flat, max(np.abs(flat.sum(axis=2)).max(), 1e-300), titles[axis])
-    figure.savefig("capture.png", dpi=100)
+    explore.keep_picture(figure, "capture.png")
     print(f"capture.png: gradient of {count} photographs for gray fog; blue: more, red: less")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.handout import Array
+
+FIGURE_1 = kit_module("08_volume_rendering", "figure_1")
 
 STEPS = 48  # along the ray of figures 2 and 4, which is 6 m long
 # The mistakes of figure 5, as its caption names them.
@@ -90,41 +93,6 @@ def wrong(
     if name == ADDED:
         return dt * (own + hidden)
     return (own - hidden) * (1.0 if name == NO_STEP else dt)
-
-
-def planet(n: int) -> tuple[Array, Array, list[Array]]:
-    """(truth, guess, masks): a planet with a ring; the guess has a moon and no ring."""
-    axis = (np.arange(n) + 0.5) / n * 2 - 1
-    place = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
-    pole = np.array([0.32, 0.86, 0.4]) / np.linalg.norm([0.32, 0.86, 0.4])
-    light = np.array([-0.6, 0.5, 0.62])
-    height = place @ pole
-    around = np.sqrt(np.maximum(np.sum(place**2, axis=-1) - height**2, 0))
-    ball = np.sum(place**2, axis=-1) < 0.46**2
-    ring = (np.abs(around - 0.76) < 0.17) & (np.abs(height) < 1.5 / n) & ~ball
-    aside = np.linalg.norm(place - [0.7, -0.72, 0.0], axis=-1)
-    truth = np.zeros((n, n, n, 4))
-    bands = 0.5 + 0.5 * np.sin(22 * height + 1.5 * np.sin(5 * height))
-    lit = 0.12 + 0.88 * np.clip(place @ light / 0.46, 0, 1)
-    paint = np.array([0.95, 0.75, 0.45]) + bands[..., None] * [-0.3, -0.38, -0.28]
-    grooves = 0.8 + 0.2 * np.cos(37 * (around - 0.76))
-    truth[..., :3] = grooves[..., None] * [0.8, 0.72, 0.6]
-    inner = np.sum(place**2, axis=-1) < 0.52**2
-    truth[inner, :3] = (lit[..., None] * paint)[inner]
-    truth[aside < 0.25, :3] = (0.35, 0.5, 0.7)
-    truth[ball, 3] = 30.0
-    guess = truth.copy()
-    truth[ring, 3], guess[aside < 0.18, 3] = 20.0, 8.0
-    return truth, guess, [ball, ring, aside < 0.18]
-
-
-def grown(mask: Array) -> Array:
-    """The mask and all voxels within two of it, whole columns along z."""
-    flat = mask.any(axis=2)
-    for _ in range(2):
-        wide = np.pad(flat, 1)
-        flat = wide[:-2, 1:-1] | wide[2:, 1:-1] | wide[1:-1, :-2] | wide[1:-1, 2:] | flat
-    return np.repeat(flat[:, :, None], mask.shape[2], axis=2)
 
 
 def reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:

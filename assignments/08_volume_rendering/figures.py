@@ -9,60 +9,36 @@ import numpy as np
 from figure_parts import ADDED, LEFT_OUT, NO_EXP, NO_STEP, OWN_LIGHT, STEPS, TAKES_IN
 from matplotlib.figure import Figure
 from photograd_course.viz.handout import Fact, Facts, figures_of, note, subplots
-from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes, signed_color_map
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 
 def fig1_view(module: ModuleType) -> tuple[Figure, Facts]:
     """A photographed volume, a wrong guess, and the derivative of the loss w.r.t. sigma."""
-    truth, guess, (planet, ring, moon) = parts.planet(44)
-    pixels, low, high = 132, -np.ones(3), np.ones(3)
-    side = (np.arange(pixels) + 0.5) / pixels * 2 - 1
-    y, x = np.meshgrid(-side, side, indexing="ij")
-    origins = np.stack([x.ravel(), y.ravel(), np.full(pixels**2, 3.0)], axis=1)
-    directions = np.tile([0.0, 0.0, -1.0], (pixels**2, 1))
-    view = (low, high, origins, directions, 66, np.array([0.02, 0.02, 0.04]))
-    photograph, seen = (module.render_rays(volume, *view) for volume in (truth, guess))
-    slope = module.render_adjoint(guess, *view, 2 / len(seen) * (seen - photograph))[0][..., 3]
-    nowhere = ~parts.grown(planet | ring | moon)
-    lacking, excess = slope[ring], slope[moon]
+    figure, found = parts.FIGURE_1.draw(module)
     facts: Facts = {
         "over 95 % of the ring's summed |derivative| is negative": Fact(
-            -lacking[lacking < 0].sum() / max(np.abs(lacking).sum(), 1e-300),
+            found["over 95 % of the ring's summed |derivative| is negative"],
             0.95,
             1,
             red="view_no_sigma",
         ),
         "over 95 % of the moon's summed |derivative| is positive": Fact(
-            excess[excess > 0].sum() / max(np.abs(excess).sum(), 1e-300),
+            found["over 95 % of the moon's summed |derivative| is positive"],
             0.95,
             1,
             red="adjoint_only_occlusion",
         ),
         "far from planet, ring and moon it is below a thousandth": Fact(
-            np.abs(slope[nowhere]).max() / np.abs(slope).max(),
+            found["far from planet, ring and moon it is below a thousandth"],
             0,
             1e-3,
             red="view_samples_of_one_ray",
         ),
         "photograph and guess differ": Fact(
-            np.abs(seen - photograph).max(), 0.3, 1, red="no_occlusion"
+            found["photograph and guess differ"], 0.3, 1, red="no_occlusion"
         ),
     }
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
-    grid = figure.add_gridspec(2, 2, width_ratios=(2, 1))
-    panels = [figure.add_subplot(place) for place in (grid[:, 0], grid[0, 1], grid[1, 1])]
-    for axes, values in zip(panels, (photograph, seen), strict=False):
-        picture = np.clip(values, 0, 1).reshape(pixels, pixels, 3) ** (1 / 2.2)
-        axes.imshow(picture, interpolation="nearest")
-    columns = slope.sum(axis=2).T[::-1]
-    top = float(np.quantile(np.abs(columns), 0.995))
-    image = panels[2].imshow(columns / top, cmap=signed_color_map(), vmin=-1, vmax=1)
-    titles = ("a volume, by your renderer", "a guess", "∂L/∂σ, summed along z")
-    for axes, title in zip(panels, titles, strict=True):
-        axes.set(xticks=[], yticks=[], title=title)
-    bar = figure.colorbar(image, ax=panels[2], ticks=[-1, 1], shrink=0.8)
-    bar.set_ticklabels(["add", "remove"])
     return figure, facts
 
 

@@ -4,10 +4,23 @@
 # your functions, next to the C++ core where that is installed. Never graded. `python explore.py`
 # takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total variation) and
 # `--capture DIR`: a folder with `transforms.json` and its images. For a capture, `--box` is the
-# extent of the box from the origin.
+# extent of the box from the origin. `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
-import time
+from photograd_course import explore
+
+given = explore.options(
+    views=12,
+    pixels=24,
+    voxels=explore.at_least(20, 2),
+    steps=60,
+    tv=explore.at_least(0.01, 0),
+    capture=explore.existing(),
+    box=explore.at_least(1.0, 1e-6),
+    figure=explore.between(1, 0, 1),
+)
+
+import importlib
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +28,10 @@ import volume_recovery as mine
 from matplotlib.figure import Figure
 from photograd_course.captures import all_around, look_at_origin, read_capture, two_striped_balls
 from photograd_course.core_volume import core_volume
-from photograd_course.explore import by_the_core, option
 
-count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
-steps, capture = option("steps", 60), option("capture", "")
-mine.TV = option("tv", mine.TV)
+count, pixels, voxels = given.views, given.pixels, given.voxels
+steps, capture = given.steps, given.capture
+explore.set_constants(mine, TV=given.tv)
 
 # %% [markdown]
 # ## A scene, and its photographs
@@ -67,11 +79,11 @@ def some(views, which):
 
 
 def recover(views, n, number):
-    """(volume, losses, seconds) of a fit from fog."""
-    before = time.perf_counter()
-    start = mine.fog((n, n, n))
-    grid, losses = mine.fit_volume(views, start, number, np.random.default_rng(0))
-    return grid, losses, time.perf_counter() - before
+    """(volume, losses, time) of a fit from fog."""
+    watch, start = explore.Stopwatch(), mine.fog((n, n, n))
+    with explore.count_calls("fit", number, mine, "render_adjoint"):
+        grid, losses = mine.fit_volume(views, start, number, np.random.default_rng(0))
+    return grid, losses, watch.stop()
 
 
 truth = two_striped_balls(24)
@@ -88,11 +100,11 @@ print(
 # %%
 slope, signs = gradient(fog, views)[..., 3], mine.gradient_sign_map(fog, views)
 print(f"signs:  {np.mean(signs < 0):.0%} of all voxels negative, {np.mean(signs > 0):.0%} positive")
-found, losses, seconds = recover(views, voxels, steps)
+found, losses, watch = recover(views, voxels, steps)
 own = mine.psnr(shown(found, views), views["pictures"])
 new = mine.psnr(shown(found, unseen), unseen["pictures"])
 print(
-    f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
+    f"fit:    {steps} steps in {watch}, {own:.1f} dB on the photographs, "
     f"{new:.1f} dB on held-out views"
 )
 
@@ -115,20 +127,20 @@ def finely(grid, views):
     return slope
 
 
-core, functions = None, by_the_core(core_volume)
+core, functions = None, explore.by_the_core(core_volume)
 if functions is not None:
     kept = mine.render_rays, mine.render_adjoint
     mine.render_rays, mine.render_adjoint = functions
     core_slope = gradient(fog, views)[..., 3]
     core_fine = finely(fog, some(views, slice(0, 2)))
-    core, _, core_seconds = recover(views, voxels, steps)
+    core, _, core_watch = recover(views, voxels, steps)
     mine.render_rays, mine.render_adjoint = kept
     fine = finely(fog, some(views, slice(0, 2)))
     gap = np.linalg.norm(core_fine - fine) / np.linalg.norm(core_fine)
     score = mine.psnr(shown(core, unseen), unseen["pictures"])
     print(
         f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
-        f"{score:.1f} dB on held-out views in {core_seconds:.1f} s"
+        f"{score:.1f} dB on held-out views in {core_watch}"
     )
 
 
@@ -169,7 +181,7 @@ for axes, (values, title) in zip(panels[1], below, strict=True):
     signed(axes, values, title)
 panels[0, -1].semilogy(np.maximum(losses, 1e-12))
 panels[0, -1].set(title="your losses", xlabel="step")
-figure.savefig("recovery.png", dpi=100)
+explore.keep_picture(figure, "recovery.png")
 print("recovery.png: a held-out view, your derivative, the recovered volume")
 
 
@@ -184,7 +196,7 @@ print("recovery.png: a held-out view, your derivative, the recovered volume")
 def taken(folder, size):
     """Views of a capture, its pictures made small."""
     photos = list(read_capture(folder, size, max(2, count)))
-    reach = np.full(3, option("box", 1.0))
+    reach = np.full(3, given.box)
     return {
         "pictures": np.stack([photo.colors for photo in photos]),
         "world_from_camera": np.stack([photo.world_from_camera for photo in photos]),
@@ -198,10 +210,10 @@ def taken(folder, size):
 if capture:
     photos = taken(Path(capture), max(pixels, 16))
     train, last = some(photos, slice(0, -1)), some(photos, slice(-1, None))
-    volume, _, seconds = recover(train, voxels, steps)
+    volume, _, watch = recover(train, voxels, steps)
     kept_back, guess = last["pictures"], shown(volume, last)
     print(
-        f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
+        f"capture: {len(train['pictures'])} photographs, {steps} steps in {watch}; "
         f"{mine.psnr(guess, kept_back):.1f} dB on the held-out one"
     )
     figure = Figure(figsize=(13, 3.4), layout="constrained")
@@ -211,5 +223,13 @@ if capture:
     light(panels[2], kept_back[0], "kept back")
     light(panels[3], guess[0], "recovered")
     signed(panels[4], gradient(mine.fog(volume.shape[:3]), train)[..., 3], "derivative, from fog")
-    figure.savefig("capture.png", dpi=100)
+    explore.keep_picture(figure, "capture.png")
     print("capture.png: your photographs, the recovered volume, the gradient at fog")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

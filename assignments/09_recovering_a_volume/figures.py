@@ -14,35 +14,15 @@ from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, plain_axes, sign
 
 def fig1_result(module: ModuleType) -> tuple[Figure, Facts]:
     """A snowman from its photographs: a held-out view, and the view during the fit."""
-    kept = module.SAMPLES, module.RAYS
-    module.SAMPLES, module.RAYS = 40, 640
-    scene, marks = parts.snowman(36), (1, 6, 15, 35, 90)
-    views = parts.photographs(module, scene, 20, 48, 0.0, 1.5)
-    unseen = parts.photographs(module, scene, 4, 48, 1.0, 1.5)
-    found = parts.watched(module, views, 36, marks)
-    module.SAMPLES, module.RAYS = kept
-    scores = [parts.score(module, grid, unseen) for grid in found]
+    figure, found = parts.FIGURE_1.draw(module)
     facts: Facts = {
-        "the fit passes 27 dB on held-out views": Fact(scores[-1], 27, 60),
-        "it gets better from picture to picture": Fact((np.diff(scores[:4]) > 0).all()),
+        "the fit passes 27 dB on held-out views": Fact(
+            found["the fit passes 27 dB on held-out views"], 27, 60
+        ),
+        "it gets better from picture to picture": Fact(
+            found["it gets better from picture to picture"]
+        ),
     }
-    poses = np.asarray(views["world_from_camera"])
-    front = {**views, "world_from_camera": look_at_origin(np.array([1.2, 0.9, 2.8]))[None]}
-    front["focal"] = 64.0  # wider, so that the hat is in the picture
-    large = parts.large_view(module, scene, front, 0)
-    pictures = [parts.rendered(module, grid, large).reshape(parts.LARGE, -1, 3) for grid in found]
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
-    grid = figure.add_gridspec(2, 15, height_ratios=(1.7, 1))
-    top = (
-        ("one of 20 photographs", np.asarray(views["pictures"])[poses[:, 2, 3].argmax()]),
-        ("held out", np.asarray(large["pictures"])[0]),
-        (f"your volume, {scores[-1]:.1f} dB", pictures[-1]),
-    )
-    for k, (title, picture) in enumerate(top):
-        parts.show(figure.add_subplot(grid[0, 5 * k : 5 * k + 5]), picture, title)
-    for k, (steps, picture) in enumerate(zip(marks, pictures, strict=True)):
-        title = f"{steps} step{'s' * (steps > 1)}"
-        parts.show(figure.add_subplot(grid[1, 3 * k : 3 * k + 3]), picture, title)
     return figure, facts
 
 
@@ -105,7 +85,7 @@ def fig3_tv(module: ModuleType) -> tuple[Figure, Facts]:
     large = parts.large_view(module, scene, unseen, 1)
     shown = [("truth", np.asarray(large["pictures"])[0])]
     for k in (0, 1, 2):
-        picture = parts.rendered(module, found[k], large).reshape(parts.LARGE, parts.LARGE, 3)
+        picture = parts.renderings(module, found[k], large).reshape(parts.LARGE, parts.LARGE, 3)
         shown.append((f"TV = {weights[k]:g}: {scores[k]:.1f} dB", picture))
     figure = Figure(figsize=(7.0, 2.1), layout="constrained")
     for axes, (title, picture) in zip(figure.subplots(1, 4), shown, strict=True):

@@ -7,12 +7,26 @@
 # `--rate` (the learning rate of sigma: 2 here, not 0.4, since toys are opaque), with the core
 # `--views` and `--size` (a power of two), and `--capture DIR`: a folder with `transforms.json` and
 # its images, of a scene that extends `--box` from the origin. Two to ten minutes; `--voxels 16`
-# takes one.
+# takes one. `--figure 0` leaves out Figure 1 of the handout, which takes about a minute.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    voxels=explore.at_least(32, 4),
+    rounds=4,
+    steps=6,
+    threshold=explore.between(0.05, 0, 1),
+    rate=explore.at_least(2.0, 0),
+    views=40,
+    size=64,
+    capture=explore.existing(),
+    box=explore.at_least(1.0, 1e-6),
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
 import tempfile
-import time
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,12 +34,11 @@ import numpy as np
 import sparse_grids as mine
 from matplotlib.figure import Figure
 from photograd_course.captures import read_capture
-from photograd_course.explore import option
 
 photographs = importlib.import_module("data.photographs")
-finest, rounds, steps = option("voxels", 32), option("rounds", 4), option("steps", 6)
-threshold, capture = option("threshold", 0.05), option("capture", "")
-mine.RATES[3] = option("rate", 2.0)
+finest, rounds, steps = given.voxels, given.rounds, given.steps
+threshold, capture = given.threshold, given.capture
+explore.set_constants(mine, RATES=np.append(mine.RATES[:3], given.rate))
 
 # %% [markdown]
 # ## Photographs
@@ -60,7 +73,7 @@ def score(grid):
 photos, unseen = (photographs.read(each) for each in (photographs.TRAINING, photographs.HELD_OUT))
 try:
     fields = importlib.import_module("photograd.fields.sparse_sh")
-    photos = photographs.render(option("views", 40), option("size", 64))
+    photos = photographs.render(given.views, given.size)
 except (ImportError, AttributeError):
     fields = None
 print(f"photographs: {len(photos)} of {photos[0].colors.shape[1]} x {photos[0].colors.shape[0]}")
@@ -99,11 +112,10 @@ def recover(fit, rays_at, finest, grow):
 
 march, found = mine.march, {}
 for name, grow in (("pruned and dilated", 1), ("pruned alone", 0)):
-    before = time.perf_counter()
+    watch = explore.Stopwatch()
     found[name] = recover(mine.fit_sparse, smaller, finest, grow)
     print(
-        f"{name}: {len(found[name][1])} of {finest**3} voxels, "
-        f"{time.perf_counter() - before:.1f} s, "
+        f"{name}: {len(found[name][1])} of {finest**3} voxels, {watch}, "
         f"{score(found[name]):.1f} dB on the held-out photographs"
     )
 
@@ -225,11 +237,10 @@ if fields is not None:
     print(f"core: its octree has {its} leaves, yours {leaves}")
     same = np.array_equal(through_openvdb(n, voxels, values), values.astype(np.float32))
     print("values are the same" if same else "values differ")
-    before = time.perf_counter()
+    watch = explore.Stopwatch()
     found["core"] = recover(core_fit, smaller, 2 * finest, 1)
     print(
-        f"core, pruned and dilated: {len(found['core'][1])} of {8 * finest**3} voxels, "
-        f"{time.perf_counter() - before:.1f} s, "
+        f"core, pruned and dilated: {len(found['core'][1])} of {8 * finest**3} voxels, {watch}, "
         f"{score(found['core']):.1f} dB on the held-out photographs"
     )
 
@@ -251,7 +262,7 @@ shown(panels[0], colors, size, "held-out photograph")
 for axes, (name, grid) in zip(panels[1:], found.items(), strict=True):
     again = seen(grid, view)
     shown(axes, again, size, f"{name}: {decibels(again, colors):.1f} dB")
-figure.savefig("sparse.png", dpi=90)
+explore.keep_picture(figure, "sparse.png", 90)
 print("sparse.png: look at it")
 
 # %% [markdown]
@@ -261,12 +272,12 @@ print("sparse.png: look at it")
 
 # %%
 if capture:
-    photos = list(read_capture(Path(capture), finest, option("views", 40)))
+    photos = list(read_capture(Path(capture), finest, given.views))
 
     def own_rays(n):
         """(rays, colors) of the photographs, n pixels wide, scaled so that they fill the cube."""
-        rays, target = rays_of(list(read_capture(Path(capture), n, option("views", 40))))
-        return np.stack([rays[0] / option("box", 1.0), rays[1]]), target
+        rays, target = rays_of(list(read_capture(Path(capture), n, given.views)))
+        return np.stack([rays[0] / given.box, rays[1]]), target
 
     own = recover(mine.fit_sparse, own_rays, finest, 1)
     rays, target = own_rays(finest)
@@ -283,5 +294,14 @@ if capture:
         part, shape = slice(ends[k], ends[k + 1]), photos[k].colors.shape[:2]
         shown(panels[0, column], target[part], shape, "photograph")
         shown(panels[1, column], again[part], shape, "recovered")
-    figure.savefig("capture.png", dpi=90)
+    explore.keep_picture(figure, "capture.png", 90)
     print("capture.png: photographs, and the same views of the recovered grid")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    drawn = importlib.import_module("data.figure_1").draw
+    explore.figure_1(lambda module: drawn(module, photographs), mine)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from photograd_course.assignment.load import load_module
+from photograd_course.build.kit_module import kit_module
 from photograd_course.build.kits import source_folders
-from photograd_course.captures import Photograph, all_around, rays_to_origin
+from photograd_course.captures import all_around, rays_to_origin
 from photograd_course.viz.handout import Array
 from photograd_course.viz.style import INK
 
@@ -23,55 +23,15 @@ def _photographs() -> ModuleType:
 
 
 PHOTOGRAPHS: Any = _photographs()
-LEVELS = ((16, 8, 3), (32, 3, 8))  # pixels and voxels along a side, rounds, steps
-
-
-def rays_of(photographs: Sequence[Photograph]) -> tuple[Array, Array]:
-    """Rays (2, R, 3) through all pixels, and their colors (R, 3)."""
-    ends = [photo.rays() for photo in photographs]
-    origin, direction = (np.concatenate(each) for each in zip(*ends, strict=True))
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    colors = np.concatenate([photo.colors.reshape(-1, 3) for photo in photographs])
-    return np.stack([origin, direction]), colors
+FIGURE_1 = kit_module("10_sparse_grids", "figure_1")
+rays_of, decibels = FIGURE_1.rays_of, FIGURE_1.decibels
+faster, show = FIGURE_1.faster, FIGURE_1.show
 
 
 def training(size: int, every: int = 1) -> tuple[Array, Array]:
     """Rays and colors of the photographs to recover from, made smaller."""
-    photos = PHOTOGRAPHS.read(PHOTOGRAPHS.TRAINING)[::every]
-    return rays_of(PHOTOGRAPHS.smaller(photos, size))
-
-
-@contextmanager
-def faster(module: ModuleType) -> Iterator[None]:
-    """A higher learning rate of sigma: toys are opaque."""
-    before = module.RATES.copy()
-    module.RATES[3] = 2.0
-    yield
-    module.RATES[:] = before
-
-
-def toys(module: ModuleType, grow: int) -> tuple[int, Array, Array]:
-    """(n, voxels, values) of the table with toys, recovered coarse to fine."""
-    n = 16
-    voxels = np.argwhere(np.ones((n, n, n), bool))
-    values = np.tile(module.START, (len(voxels), 1))
-    with faster(module):
-        for size, rounds, steps in LEVELS:
-            rays, target = training(size)
-            if size > n:
-                n, voxels, values = module.refine(n, voxels, values, rays, 0.05)
-            voxels, values, _ = module.fit_sparse(
-                n, voxels, values, rays, target, rounds, steps, 0.05, grow
-            )
-    return n, voxels, values
-
-
-def show(axes: Axes, colors: Array, title: str) -> None:
-    """A square image of linear radiance."""
-    side = round(len(colors) ** 0.5)
-    screen = np.clip(colors, 0, 1).reshape(side, side, 3) ** (1 / 2.2)
-    axes.imshow(screen, interpolation="nearest")
-    axes.set(xticks=[], yticks=[], title=title)
+    found: tuple[Array, Array] = FIGURE_1.training(PHOTOGRAPHS, size, every)
+    return found
 
 
 def gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
@@ -146,7 +106,3 @@ def outlines(axes: Axes, n: int, sets: Sequence[Array]) -> None:
             axes.plot([i - 0.5, i - 0.5], [j - 1.5, j - 0.5], color=INK, linestyle=style, lw=1)
         for i, j in np.argwhere(mask[:, :-1] != mask[:, 1:]):
             axes.plot([i - 1.5, i - 0.5], [j - 0.5, j - 0.5], color=INK, linestyle=style, lw=1)
-
-
-def decibels(a: Array, b: Array) -> float:
-    return float(-10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30)))

@@ -17,27 +17,12 @@ DPI = 220  # 7 inches wide gives 1540 pixels
 
 def fig1_result(module: ModuleType) -> tuple[Figure, Facts]:
     """A held-out photograph; a sparse grid recovered from others; the same without dilation."""
-    photo = parts.PHOTOGRAPHS.read(parts.PHOTOGRAPHS.HELD_OUT)[2]
-    rays, truth = parts.rays_of([photo])
-    shown, scores, counts = [truth], [], []
-    for grow in (1, 0):
-        n, voxels, values = parts.toys(module, grow)
-        shown.append(module.render(values, module.march(n, voxels, rays)))
-        scores.append(parts.decibels(shown[-1], truth))
-        counts.append(len(voxels))
+    figure, found = parts.FIGURE_1.draw(module, parts.PHOTOGRAPHS)
     facts: Facts = {
         "with dilation more than 1 dB better": Fact(
-            scores[0] - scores[1], 1.0, 20.0, red="fit_never_grows"
+            found["with dilation more than 1 dB better"], 1.0, 20.0, red="fit_never_grows"
         )
     }
-    figure, panels = subplots(7.0, 2.65, 1, 3)
-    titles = (
-        "held-out photograph",
-        f"recovered, {counts[0]:,} voxels: {scores[0]:.1f} dB",
-        f"without dilation: {scores[1]:.1f} dB",
-    )
-    for axes, colors, title in zip(panels, shown, titles, strict=True):
-        parts.show(axes, colors, title)
     return figure, facts
 
 

@@ -4,22 +4,34 @@
 # with your functions, coarse to fine and with a fixed grid. Where the C++ core is installed, the
 # same fit with its harmonics stands beside yours. Never graded. Run it as `python explore.py`;
 # `--views`, `--pixels`, `--degree`, `--levels` and `--steps` (in all) change the amount of work,
-# `--coarse` the cells of the coarsest level, `--rate` the learning rate.
+# `--coarse` the cells of the coarsest level, `--rate` the learning rate. `--figure 0` leaves out
+# Figure 1 of the handout, which takes about a minute.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    views=30,
+    pixels=16,
+    degree=explore.between(2, 0, 2),
+    levels=3,
+    steps=30,
+    coarse=explore.at_least(4, 2),
+    rate=explore.at_least(0.2, 0),
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
-import time
 
 import numpy as np
 import plenoxels as mine
 from matplotlib.figure import Figure
-from photograd_course.explore import by_the_core, option
 
 teapot = importlib.import_module("data.teapot")
-views, pixels, degree = option("views", 30), option("pixels", 16), option("degree", 2)
-levels, steps, coarse = option("levels", 3), option("steps", 30), option("coarse", 4)
+views, pixels, degree = given.views, given.pixels, given.degree
+levels, steps, coarse = given.levels, given.steps, given.coarse
 cells, K = coarse * 2 ** (levels - 1), (degree + 1) ** 2
-mine.RATE = option("rate", 0.2)
+explore.set_constants(mine, RATE=given.rate)
 
 
 def seen(volume, rays):
@@ -40,19 +52,20 @@ print(f"scene: a teapot, {views} photographs of {pixels} x {pixels}")
 
 # %%
 def recover(n, count):
-    """(density, coefficients) and seconds, from a grid of n^3 through the given levels."""
+    """(density, coefficients) and time, from a grid of n^3 through the given levels."""
     start = np.full((n, n, n), 0.1), np.zeros((n, n, n, K, 3))
     start[1][..., 0, :] = 1.8  # gray: black fog before black would change no pixel
-    before = time.perf_counter()
-    found = mine.fit_plenoxels(*start, rays, target, count, max(1, steps // count))
-    return found[:2], time.perf_counter() - before
+    watch, each = explore.Stopwatch(), max(1, steps // count)
+    with explore.count_calls(f"{count} levels", count * each, mine, "loss_and_grad"):
+        found = mine.fit_plenoxels(*start, rays, target, count, each)
+    return found[:2], watch.stop()
 
 
-fine, seconds = recover(coarse, levels)
-fixed, fixed_seconds = recover(cells, 1)
-for name, volume, took in (("coarse to fine", fine, seconds), ("fixed grid", fixed, fixed_seconds)):
+fine, watch = recover(coarse, levels)
+fixed, fixed_watch = recover(cells, 1)
+for name, volume, took in (("coarse to fine", fine, watch), ("fixed grid", fixed, fixed_watch)):
     own, new = decibels(seen(volume, rays), target), decibels(seen(volume, unseen), truth)
-    print(f"{name}: {took:.1f} s, {own:.1f} dB on the photographs, {new:.1f} dB on held-out views")
+    print(f"{name}: {took}, {own:.1f} dB on the photographs, {new:.1f} dB on held-out views")
 
 # %% [markdown]
 # ## The C++ core
@@ -65,7 +78,7 @@ numbers = np.random.default_rng(1).normal(size=(20_000, K, 3))
 g = np.random.default_rng(2).normal(size=(20_000, 3))
 d_numbers, d_vectors = mine.sh_color_adjoint(numbers, vectors, g)
 core_fine = None
-core = by_the_core(lambda: importlib.import_module("photograd.sh"))
+core = explore.by_the_core(lambda: importlib.import_module("photograd.sh"))
 if core is not None:
 
     def unit(v):
@@ -105,5 +118,14 @@ for panels, (title, colors) in zip(figure.subplots(len(rows), 3), rows, strict=T
     for axes, picture in zip(panels, np.split(np.clip(colors, 0, 1) ** (1 / 2.2), 3), strict=True):
         axes.imshow(picture.reshape(64, 64, 3))
         axes.set(xticks=[], yticks=[], title=title)
-figure.savefig("plenoxels.png", dpi=100)
+explore.keep_picture(figure, "plenoxels.png")
 print("plenoxels.png: held-out views; does the highlight move?")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    drawn = importlib.import_module("data.figure_1").draw
+    explore.figure_1(lambda module: drawn(module, teapot), mine)

@@ -1,45 +1,13 @@
 """What the figures of assignment 11 draw: scenes, measurements, pieces of pictures."""
 
-from contextlib import contextmanager
-
 import numpy as np
 from matplotlib.patches import Circle
-from photograd_course.assignment.load import load_module
-from photograd_course.build.kits import source_folders
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.style import FRAME, signed_color_map
 
-
-def _teapot():
-    """`data/teapot.py`."""
-    file = source_folders()["11_spherical_harmonics"] / "data" / "teapot.py"
-    return load_module("teapot", file.read_text("utf-8"))
-
-
-TEAPOT = _teapot()
-
-
-@contextmanager
-def rate(module, value, samples=24):
-    """Another learning rate, as the teapot is opaque, and more samples on a ray."""
-    before = module.RATE, module.SAMPLES
-    module.RATE, module.SAMPLES = value, samples
-    yield
-    module.RATE, module.SAMPLES = before
-
-
-def recovered_teapot(module, k):
-    """(density, coefficients) with k coefficients, on 16^3 cells, from photographs."""
-    rays, target = TEAPOT.photographs(30, 16)
-    start = np.full((4, 4, 4), 0.1), np.zeros((4, 4, 4, k, 3))
-    start[1][..., 0, :] = 1.8  # gray: black fog before black would change no pixel
-    with rate(module, 0.2):
-        found = module.fit_plenoxels(*start, rays, target, 3, 12)[:2]
-    with rate(module, 0.05):
-        return module.fit_plenoxels(*found, rays, target, 1, 16)[:2]
-
-
-def seen(module, volume, rays):
-    return module.render(*volume, module.march(volume[0].shape, rays))
+TEAPOT = kit_module("11_spherical_harmonics", "teapot")
+FIGURE_1 = kit_module("11_spherical_harmonics", "figure_1")
+rate, seen = FIGURE_1.rate, FIGURE_1.seen
 
 
 def ball(n):

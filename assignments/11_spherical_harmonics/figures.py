@@ -13,23 +13,15 @@ from photograd_course.viz.style import RED as CRIMSON
 
 def fig1_result(module):
     """Views of a teapot that were held out; recovered; and recovered with degree 0."""
-    size = 72
-    rays, truth = parts.TEAPOT.photographs(3, size, 0.7)
-    volumes = [parts.recovered_teapot(module, k) for k in (9, 1)]
-    with parts.rate(module, module.RATE):
-        views = [parts.seen(module, each, rays) for each in volumes]
-    scores = [psnr(each, truth) for each in views]
+    figure, found = parts.FIGURE_1.draw(module, parts.TEAPOT)
     facts = {
-        "with harmonics more than 22 dB": Fact(scores[0], 22, 60, red="uphill"),
-        "degree 0 loses more than 0.5 dB": Fact(scores[0] - scores[1], 0.5, 20, red="uphill"),
+        "with harmonics more than 22 dB": Fact(
+            found["with harmonics more than 22 dB"], 22, 60, red="uphill"
+        ),
+        "degree 0 loses more than 0.5 dB": Fact(
+            found["degree 0 loses more than 0.5 dB"], 0.5, 20, red="uphill"
+        ),
     }
-    figure, panels = subplots(6.0, 6.0, 3, 3)
-    names = ("held out", f"recovered: {scores[0]:.1f} dB", f"degree 0: {scores[1]:.1f} dB")
-    for row, colors, name in zip(panels, (truth, *views), names, strict=True):
-        for axes, picture in zip(row, colors.reshape(3, size, size, 3), strict=True):
-            axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2), interpolation="nearest")
-            axes.set(xticks=[], yticks=[])
-        row[0].set_ylabel(name)
     return figure, facts
 
 

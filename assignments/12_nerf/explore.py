@@ -1,88 +1,70 @@
 # %% [markdown]
 # # A scene in a network
-# Photographs a scene defined by formulas, trains your network, and shows held-out views and a
-# slice of the density. Never graded. `python explore.py` takes `--views`, `--pixels`,
-# `--steps`, `--bands` (of points), `--coarse` and `--fine` (distances on each ray), `--width` of
-# the hidden layers, and `--capture DIR`: a folder with `transforms.json` and its images. For a
-# capture, `--near` and `--far` are the distances between which the scene lies.
+# Photographs the scene of Figure 1, trains your network, and shows held-out views, the normals of
+# its density, and a slice of it. Never graded. `python explore.py` takes `--views`, `--pixels`,
+# `--steps`, `--bands` (of points), `--coarse` and `--fine` (distances on each ray), `--rays` (of
+# a step), `--width` of the hidden layers, `--shown` (pixels of the views in the picture), and
+# `--capture DIR`: a folder with `transforms.json` and its images. For a capture, `--near` and
+# `--far` are the distances between which the scene lies.
 
 # %%
-import time
+from photograd_course import explore
+
+given = explore.options(
+    views=40,
+    pixels=40,
+    steps=2500,
+    bands=explore.at_least(4, 0),
+    coarse=explore.at_least(16, 2),
+    fine=explore.at_least(16, 0),
+    rays=32,
+    width=64,
+    shown=explore.at_least(110, 2),
+    capture=explore.existing(),
+    near=explore.at_least(1.8, 0),
+    far=explore.at_least(4.2, 0),
+)
+
+import importlib
 from pathlib import Path
 
 import nerf as mine
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.captures import (
-    Photograph,
-    all_around,
-    look_at_origin,
-    read_capture,
-    striped_balls,
+from photograd_course.captures import read_capture
+
+scene = importlib.import_module("data.scene")
+explore.set_constants(
+    mine, BANDS=given.bands, COARSE=given.coarse, FINE=given.fine, RAYS=given.rays
 )
-from photograd_course.explore import option
-
-count, pixels, steps = option("views", 30), option("pixels", 24), option("steps", 600)
-mine.BANDS = option("bands", mine.BANDS)
-mine.COARSE, mine.FINE = option("coarse", mine.COARSE), option("fine", mine.FINE)
-width, capture = option("width", 64), option("capture", "")
-BACKGROUND = np.array([0.9, 0.93, 1.0])
-
-
-def views_of(photos, near, far, background):
-    """Views of all pixels of some photographs."""
-    origins, directions = (
-        np.concatenate(each) for each in zip(*[photo.rays() for photo in photos], strict=True)
-    )
-    return {
-        "origins": origins,
-        "directions": directions / np.linalg.norm(directions, axis=1, keepdims=True),
-        "colors": np.concatenate([photo.colors.reshape(-1, 3) for photo in photos]),
-        "background": background,
-        "near": near,
-        "far": far,
-    }
-
-
-def photographs(number, size, turn=0.0):
-    """Views of the scene by formulas."""
-    dark, poses = (
-        np.zeros((size, size, 3)),
-        map(look_at_origin, 3.0 * all_around(number, turn, up=1)),
-    )
-    views = views_of([Photograph(dark, pose, 1.4 * size) for pose in poses], 1.8, 4.2, BACKGROUND)
-    rays = (views[name].reshape(number, -1, 3) for name in ("origins", "directions"))
-    seen = [striped_balls(places[0], d, BACKGROUND) for places, d in zip(*rays, strict=True)]
-    return {**views, "colors": np.concatenate(seen)}
-
-
-def decibels(a, b):
-    return -10 * np.log10(np.mean((a - b) ** 2))
-
+steps, pixels, shown = given.steps, given.pixels, given.shown
 
 # %% [markdown]
 # ## Your training
 
 # %%
-views, unseen = photographs(count, pixels), photographs(3, pixels, 1.0)
-print(f"scene: {count} photographs of {pixels} x {pixels}")
+views, unseen = scene.both_views(given.views, pixels)
+print(f"scene: {given.views} photographs of {pixels} x {pixels}")
 
 
 def recover(views):
-    """(network, losses) of a training from the start."""
-    rng = np.random.default_rng(0)
-    before = time.perf_counter()
-    network, losses = mine.train_nerf(views, mine.make_network(width, 16, rng), steps, rng)
-    numbers = sum(array.size for layers in network.values() for array in layers)
-    print(f"fit:   {numbers} numbers, {steps} steps in {time.perf_counter() - before:.1f} s")
-    return network, losses
+    """(networks after some steps and at the end, losses) of a training from the start."""
+    watch, marks = explore.Stopwatch(), [k for k in scene.MARKS if k < steps] + [steps]
+    with explore.count_calls("fit", steps, mine, "loss_and_grad"):
+        networks, losses = scene.trained(mine, views, given.width, marks)
+    numbers = sum(array.size for layers in networks[-1].values() for array in layers)
+    print(f"fit:   {numbers} numbers, {steps} steps in {watch}")
+    return dict(zip(marks, networks, strict=True)), losses
 
 
-network, losses = recover(views)
+networks, losses = recover(views)
+network = networks[steps]
 some = mine.take(views, slice(0, 3 * pixels**2))
-own = decibels(mine.render(network, some), some["colors"])
-new = decibels(mine.render(network, unseen), unseen["colors"])
-print(f"       {own:.1f} dB on photographs of training, {new:.1f} dB on held-out views")
+scores = {
+    k: scene.decibels(mine.render(each, unseen), unseen["colors"]) for k, each in networks.items()
+}
+own = scene.decibels(mine.render(network, some), some["colors"])
+print(f"       {own:.1f} dB on photographs of training, {scores[steps]:.1f} dB on held-out views")
 
 # %% [markdown]
 # ## Figures
@@ -104,19 +86,32 @@ def slice_of_density(z, size=64):
     return (1 - np.exp(-sigma / 16)).reshape(size, size)
 
 
-large = photographs(3, 64, 1.0)
-got = mine.render(network, large).reshape(3, 64, 64, 3)
-figure = Figure(figsize=(13, 6.2), layout="constrained")
-panels = figure.subplots(2, 4)
-for k in range(3):
-    light(panels[0, k], large["colors"].reshape(3, 64, 64, 3)[k], "held out")
-    light(panels[1, k], got[k], "your network")
-panels[0, 3].semilogy(np.maximum(losses, 1e-12))
-panels[0, 3].set(title="your losses", xlabel="step")
-panels[1, 3].imshow(slice_of_density(0.0), cmap="gray_r", vmin=0, vmax=1)
-panels[1, 3].set(title="density at height 0", xticks=[], yticks=[])
-figure.savefig("nerf.png", dpi=100)
-print("nerf.png: held-out views, losses, a slice of the density")
+large = scene.photographs(scene.places(3, turn=1.7)[[2, 0]], shown)
+small = scene.photographs(scene.places(3, turn=1.7)[2:], shown // 2)
+normals, opacity = scene.normals(mine, network, large)
+shade = 1 - opacity[:, None] + opacity[:, None] * (0.5 + 0.5 * normals)
+square = (2, shown, shown, 3)
+rows = [each.reshape(square) for each in (large["colors"], mine.render(network, large), shade)]
+figure = Figure(figsize=(13, 10.5), layout="constrained")
+grid = figure.add_gridspec(3, 20, height_ratios=(5, 5, 3.4))
+for row in range(2):
+    light(figure.add_subplot(grid[row, :5]), rows[0][row], "held-out photograph")
+    light(figure.add_subplot(grid[row, 5:10]), rows[1][row], "your network")
+    axes = figure.add_subplot(grid[row, 10:15])
+    axes.imshow(np.clip(rows[2][row], 0, 1))
+    axes.set(title="normals of its density", xticks=[], yticks=[])
+axes = figure.add_subplot(grid[0, 15:])
+axes.semilogy(np.maximum(losses, 1e-12))
+axes.set(title="your losses", xlabel="step")
+axes = figure.add_subplot(grid[1, 15:])
+axes.imshow(slice_of_density(-0.2), cmap="gray_r", vmin=0, vmax=1)
+axes.set(title="density at height -0.2", xticks=[], yticks=[])
+for k, (mark, each) in enumerate([*networks.items()][-5:]):
+    axes = figure.add_subplot(grid[2, 4 * k : 4 * k + 4])
+    view = mine.render(each, small).reshape(shown // 2, shown // 2, 3)
+    light(axes, view, f"{mark} steps: {scores[mark]:.1f} dB")
+explore.keep_picture(figure, "nerf.png")
+print("nerf.png: held-out views, normals, losses, a slice of the density, the training")
 
 # %% [markdown]
 # ## Photographs of your own
@@ -125,17 +120,18 @@ print("nerf.png: held-out views, losses, a slice of the density")
 # The background is the mean of the borders of the images. The last photograph is held out.
 
 # %%
-if capture:
-    photos = list(read_capture(Path(capture), max(pixels, 16), max(2, count)))
+if given.capture:
+    photos = list(read_capture(Path(given.capture), max(pixels, 16), max(2, given.views)))
     border = np.concatenate([photo.border for photo in photos]).mean(axis=0)
-    around = option("near", 1.8), option("far", 4.2), border
-    network, _ = recover(views_of(photos[:-1], *around))
-    last, truth = views_of(photos[-1:], *around), photos[-1].colors
+    around = {"background": border, "near": given.near, "far": given.far}
+    network = recover(scene.views_of(photos[:-1], **around))[0][steps]
+    last, truth = scene.views_of(photos[-1:], **around), photos[-1].colors
     guess = mine.render(network, last)
-    print(f"capture: {decibels(guess, last['colors']):.1f} dB on the held-out photograph")
+    score = scene.decibels(guess, last["colors"])
+    print(f"capture: {score:.1f} dB on the held-out photograph")
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     panels = figure.subplots(1, 2)
     light(panels[0], truth, "held out")
     light(panels[1], guess.reshape(truth.shape), "your network")
-    figure.savefig("capture.png", dpi=100)
+    explore.keep_picture(figure, "capture.png")
     print("capture.png: the held-out photograph, and your network")

@@ -18,7 +18,7 @@ def fig1_view(module):
     got = module.render(networks[-1], large)
     scores = [parts.decibels(module.render(each, unseen), unseen["colors"]) for each in networks]
     count = sum(array.size for layers in networks[-1].values() for array in layers)
-    normals, opacity = parts.normals(module, networks[-1], large)
+    normals, opacity = parts.SCENE.normals(module, networks[-1], large)
     which = parts.nearest(large["origins"], large["directions"])[1]
     floor, fog = which == 3, (which == -1) & (opacity > 0.5)
     facts = {

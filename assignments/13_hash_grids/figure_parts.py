@@ -7,11 +7,12 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from photograd_course.build.kit_module import kit_module
 
 Array = np.ndarray[Any, np.dtype[Any]]
 
-# Steps of the network that take as long in NumPy as one step of the hash grid, on one core.
-SLOWER = 4
+TRAINING = kit_module("13_hash_grids", "training")
+decibels, SLOWER = TRAINING.decibels, TRAINING.SLOWER
 
 
 def smooth(points: Array) -> Array:
@@ -24,10 +25,6 @@ def smooth(points: Array) -> Array:
     return (0.5 + 0.5 * waves).T
 
 
-def decibels(a: Array, b: Array) -> float:
-    return float(-10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30)))
-
-
 def hash_grid(
     module: ModuleType,
     target: Array,
@@ -38,15 +35,9 @@ def hash_grid(
     rate: float = 0.03,
 ) -> tuple[Array, int]:
     """(colors of all pixels, parameters) of a hash grid trained on a square picture."""
-    rng = np.random.default_rng(1)
     points = module.pixels(round(len(target) ** 0.5))
     levels = module.make_levels(resolutions, 2, most)
-    table = rng.uniform(-1e-4, 1e-4, (levels[-1, 1] + levels[-1, 2], 2))
-    weights = module.start_weights((2 * len(levels), 16, 3), rng)
-    batches = rng.integers(0, len(points), (steps, batch))
-    table, weights, _ = module.train_hash_grid(
-        points, target, batches, levels, table, weights, rate
-    )
+    table, weights = TRAINING.hash_grid(module, target, levels, steps, batch, rate)
     colors = module.network(weights, module.encode(points, table, levels))
     return colors, table.size + module.numbers_per_point(weights)
 
@@ -66,11 +57,8 @@ def plain_network(
     """(colors of all pixels, weights) of a network; it does not depend on any task."""
     key = (target.tobytes(), steps, batch, octaves, hidden, rate)
     if key not in _plain:
-        rng = np.random.default_rng(2)
         points = module.pixels(round(len(target) ** 0.5))
-        weights = module.start_weights((2 + 4 * octaves, *hidden, 3), rng)
-        batches = rng.integers(0, len(points), (steps, batch))
-        weights, _ = module.train_network(points, target, batches, octaves, weights, rate)
+        weights = TRAINING.plain_network(module, target, steps, batch, octaves, hidden, rate)
         _plain[key] = module.network(weights, module.frequencies(points, octaves)), weights
     return _plain[key]
 

@@ -14,11 +14,12 @@ from photograd_course.viz.style import RED as CRIMSON
 
 def fig1_equal_time(module: ModuleType) -> tuple[Figure, Facts]:
     """A picture, a network and a hash grid after equal times."""
-    size, steps, batch = 144, 160, 2048
+    size, steps, batch = 144, 160, parts.TRAINING.BATCH
     target = module.julia(module.pixels(size))
-    resolutions = (8, 16, 32, 64, 96, 144)
+    resolutions = parts.TRAINING.resolutions(size)
     ours, parameters = parts.hash_grid(module, target, resolutions, 2**14, steps, batch)
-    plain, weights = parts.plain_network(module, target, parts.SLOWER * steps, batch, 6)
+    octaves = parts.TRAINING.OCTAVES
+    plain, weights = parts.plain_network(module, target, parts.SLOWER * steps, batch, octaves)
     scores = parts.decibels(plain, target), parts.decibels(ours, target)
     facts: Facts = {
         "the hash grid is better by more than 7 dB": Fact(

@@ -85,7 +85,7 @@ def hash_index(corners: Corners, resolution: int, rows: int) -> Rows:
     """The row of each corner of a level, counted from the level's first row.
 
     Args:
-        corners: (M, D) of int64, each index from 0 to `resolution`; D is 2 or 3.
+        corners: (M, D) of int64, each index from 0 to `resolution`; D is 2 or 3, M may be 0.
         resolution: n, cells along an axis.
         rows: T, of this level in the table; any number, not only a power of two.
 
@@ -135,6 +135,7 @@ def encode(points: Points, table: Table, levels: Levels) -> Features:
 
     Args:
         points: (N, D); what lies outside of 0 to 1 has the features of the nearest point inside.
+            N may be 0.
         table: (R, F), the rows of all levels.
         levels: (L, 3), resolution, first row and number of rows of each level.
 
@@ -157,7 +158,7 @@ def encode_backward(
     """Derivatives of a loss with respect to the table and to the points.
 
     Args:
-        points, table, levels: as for `encode`.
+        points, table, levels: as for `encode`; N may be 0.
         d_features: (N, L F), the derivatives of the loss with respect to the features.
 
     Returns:
@@ -327,7 +328,8 @@ def train_hash_grid(
     Args:
         points: (N, D), all points of the data.
         target: (N, C), the values there.
-        batches: (steps, B) of int64, the rows of `points` and `target` that each step uses.
+        batches: (steps, B) of int64, the rows of `points` and `target` that each step uses; there
+            may be 0 steps.
         levels: (L, 3), of `make_levels`.
         table: (R, F), at the start.
         weights: of the decoder at the start, from L F features to C values.

@@ -197,7 +197,8 @@ def edge_sampling_backward(
     framed = (column >= 0) & (column < width) & (row >= 0) & (row < height)
     pulls = d_image[np.where(framed, row, 0), np.where(framed, column, 0)]
     pull = framed * np.sum(pulls * (inside(spots) - outside(spots)), axis=1)
-    normal = np.stack([sides[:, 1], -sides[:, 0]], axis=1) / lengths[:, None]
+    with np.errstate(invalid="ignore"):  # a side of length 0 is never chosen
+        normal = np.stack([sides[:, 1], -sides[:, 0]], axis=1) / lengths[:, None]
     push = (stops[-1] / len(u) * pull)[:, None] * normal[edge]
     d_vertices = np.zeros(vertices.shape)
     np.add.at(d_vertices, edge, (1 - share)[:, None] * push)

@@ -5,27 +5,34 @@
 # `python explore.py` takes `--letters AB`, `--cells` (of the lens, along each axis), `--steps` (at
 # each of three resolutions), `--samples` (of edge sampling, in each step), `--depth` (of the fit of
 # the material) and `--fit` (its steps). Where the C++ core is installed, your edge sampling is
-# compared with its exact derivative.
+# compared with its exact derivative. `--figure 0` leaves out Figure 1 of the handout, at the end.
 
 # %%
+from photograd_course import explore
+
+given = explore.options(
+    letters="",
+    cells=64,
+    steps=60,
+    samples=400,
+    depth=explore.at_least(3, 2),
+    fit=45,
+    figure=explore.between(1, 0, 1),
+)
+
 import importlib
 import sys
-import time
 from pathlib import Path
 
 import edges_and_light as mine
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.explore import by_the_core, option
 
 own = Path(mine.__file__).read_text(encoding="utf-8")
-letters = option("letters", mine.initials_of(own)).upper()
-cells, steps, samples = option("cells", 64), option("steps", 60), option("samples", 400)
-depth, fit = option("depth", 3), option("fit", 45)
+letters = (given.letters or mine.initials_of(own)).upper()
+cells, steps, samples, depth, fit = given.cells, given.steps, given.samples, given.depth, given.fit
 if len(letters) != 2 or not (letters.isascii() and letters.isalpha()):
-    sys.exit("explore.py: letters are two of A to Z")
-if min(cells, steps, samples, fit) < 1 or depth < 2:
-    sys.exit("explore.py: cells, steps, samples and fit are 1 or more, depth is 2 or more")
+    sys.exit(f"explore.py: --letters: expected two of A to Z, got {letters!r}")
 
 # %% [markdown]
 # ## A silhouette and a stroke
@@ -36,11 +43,12 @@ radius = 8 + 2.2 * np.sin(2 * angle + 0.6) + 1.1 * np.sin(3 * angle + 2)
 outline = 14 + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 start = 14 + 4.5 * np.stack([np.cos(angle[::4]), np.sin(angle[::4])], axis=1)
 picture = mine.polygon_image(outline, 28, 28)
-before = time.perf_counter()
-found, _ = mine.recover_polygon(picture, start, 90, 3, samples, 0.3)
+watch = explore.Stopwatch()
+with explore.count_calls("silhouette", 90, mine, "edge_sampling_backward"):
+    found, _ = mine.recover_polygon(picture, start, 90, 3, samples, 0.3)
 shown = mine.polygon_image(found, 28, 28)
 union = np.minimum(shown, picture).sum() / np.maximum(shown, picture).sum()
-print(f"silhouette: intersection over union {union:.3f}, {time.perf_counter() - before:.1f} s")
+print(f"silhouette: intersection over union {union:.3f}, {watch}")
 curve = np.array([[2.5, 4.0], [10.0, -1.0], [12.0, 12.0]])
 stroke = mine.stroke_image(curve, 2.2, 15, 15)
 fitted, width = mine.recover_stroke(
@@ -54,7 +62,9 @@ print(f"stroke:     width {width:.4f}, it is 2.2")
 # %%
 d_image = np.random.default_rng(1).uniform(-1, 1, (28, 28))
 name = "photograd.raster.coverage"
-exact = by_the_core(lambda: importlib.import_module(name).polygon_coverage_backward(start, d_image))
+exact = explore.by_the_core(
+    lambda: importlib.import_module(name).polygon_coverage_backward(start, d_image)
+)
 if exact is not None:
     u = (np.arange(100 * samples) + 0.5) / (100 * samples)
     got = mine.edge_sampling_backward(start, mine._white, mine._black, d_image[..., None], u)
@@ -71,12 +81,12 @@ photograph = np.mean(
     [mine.path_radiance(mine.demo_niche(), *many, 3, 90 + k) for k in range(6)], axis=0
 )
 photograph = photograph.reshape(-1, 500, 3).mean(axis=1)
-before = time.perf_counter()
-guess = mine.demo_niche((0.5, 0.5, 0.5), 0.45)
-color, rough, track = mine.recover_material(guess, 0, *rays, photograph, depth, fit, 11)
+watch, guess = explore.Stopwatch(), mine.demo_niche((0.5, 0.5, 0.5), 0.45)
+with explore.count_calls("material", fit, mine, "replay_backward"):
+    color, rough, track = mine.recover_material(guess, 0, *rays, photograph, depth, fit, 11)
 print(
     f"material:   base color {color.round(3)}, roughness {rough:.3f} with paths of depth {depth}, "
-    f"{time.perf_counter() - before:.1f} s; it is 0.8, 0.5, 0.2 and 0.35"
+    f"{watch}; it is 0.8, 0.5, 0.2 and 0.35"
 )
 
 # %% [markdown]
@@ -84,14 +94,15 @@ print(
 
 # %%
 target = mine.letters_image(letters, 32)
-before = time.perf_counter()
-heights, losses = mine.design_caustic(target, cells, steps)
+watch = explore.Stopwatch()
+with explore.count_calls("caustic", 3 * steps, mine, "landing_backward"):
+    heights, losses = mine.design_caustic(target, cells, steps)
 light = mine.splat(mine.landing_points(mine.finer(heights, 4)), 96)
 coarse = light.reshape(32, 3, 32, 3).mean(axis=(1, 3))
 likeness = np.corrcoef(coarse.ravel(), target.ravel())[0, 1]
 print(
     f"caustic:    {letters}, correlation {likeness:.3f} with 16 times the rays, height "
-    f"{np.ptp(heights):.3f} of the width, {time.perf_counter() - before:.1f} s"
+    f"{np.ptp(heights):.3f} of the width, {watch}"
 )
 
 # %% [markdown]
@@ -118,5 +129,13 @@ for k, goal in enumerate((0.8, 0.5, 0.2, 0.35)):
 axes[1, 2].set(title="base color and roughness", ylim=(0, 1), xlabel="step")
 for axis in axes.flat[[0, 1, 3, 4]]:
     axis.set(xticks=[], yticks=[])
-figure.savefig("edges_and_light.png", dpi=110)
+explore.keep_picture(figure, "edges_and_light.png", 110)
 print("wrote edges_and_light.png")
+
+# %% [markdown]
+# ## Figure 1 of the handout
+# By your functions, with what its caption claims.
+
+# %%
+if given.figure:
+    explore.figure_1(importlib.import_module("data.figure_1").draw, mine)

@@ -6,42 +6,17 @@ from functools import cache
 from types import ModuleType
 
 import numpy as np
+from photograd_course.build.kit_module import kit_module
 from photograd_course.viz.handout import Array
 
-LETTERS = "PG"
-CURVE, WIDTH = np.array([[2.5, 4.0], [10.0, -1.0], [12.0, 12.0]]), 2.2
+FIGURE_1 = kit_module("14_edges_and_light", "figure_1")
+LETTERS = FIGURE_1.LETTERS
+CURVE = FIGURE_1.CURVE
+WIDTH = FIGURE_1.WIDTH
+close_up = FIGURE_1.close_up
+likeness = FIGURE_1.likeness
+
 TRIANGLE = np.array([[3.2, 2.1], [12.9, 5.5], [6.1, 13.4]])
-
-
-def close_up(points: Array) -> Array:
-    """Points of a closed line: the first one again at the end."""
-    return np.concatenate([points, points[:1]])
-
-
-def blob(count: int = 80) -> Array:
-    """The outline of a leaf-like shape in a picture of 28 x 28 pixels."""
-    angle = np.arange(count) * 2 * np.pi / count
-    radius = 8 + 2.2 * np.sin(2 * angle + 0.6) + 1.1 * np.sin(3 * angle + 2)
-    return 14 + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def circle(count: int, radius: float, center: float = 14.0) -> Array:
-    """A regular polygon."""
-    angle = np.arange(count) * 2 * np.pi / count
-    return center + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def overlap(module: ModuleType, found: Array, picture: Array) -> float:
-    """Intersection over union of a polygon and a picture."""
-    shown = module.polygon_image(found, *picture.shape)
-    return float(np.minimum(shown, picture).sum() / max(np.maximum(shown, picture).sum(), 1e-9))
-
-
-def likeness(shown: Array, picture: Array) -> float:
-    """Correlation of two pictures; 0 where one is not finite."""
-    if not np.isfinite(shown).all():
-        return 0.0
-    return float(np.corrcoef(shown.ravel(), picture.ravel())[0, 1])
 
 
 def samples_of(offset: float, angle: float, side: int = 500) -> float:

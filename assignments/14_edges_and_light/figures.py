@@ -16,45 +16,17 @@ SIGNED = signed_color_map()
 
 def fig1_result(module: ModuleType) -> tuple[Figure, Facts]:
     """A caustic of two letters; its lens; a silhouette and a stroke, recovered."""
-    target = module.letters_image(parts.LETTERS, 32)
-    heights, _ = module.design_caustic(target, 64, 60)
-    shown = module.splat(module.landing_points(heights), 32)
-    light = module.splat(module.landing_points(module.finer(heights, 3)), 96)
-    outline, start = parts.blob(), parts.circle(24, 4.5)
-    picture = module.polygon_image(outline, 28, 28)
-    found, _ = module.recover_polygon(picture, start, 90, 3, 800, 0.3)
-    stroke = module.stroke_image(parts.CURVE, parts.WIDTH, 15, 15)
-    guess = parts.CURVE - np.array([[1, -1.5], [1, -1], [1, 1]])
-    curve, width = module.recover_stroke(stroke, guess, 1.5, 120)
-    coarse = light.reshape(32, 3, 32, 3).mean(axis=(1, 3))
+    figure, found = parts.FIGURE_1.draw(module)
     facts: Facts = {
-        "the design has the letters": Fact(parts.likeness(shown, target), 0.98, 1.0),
-        "with nine times the rays as well": Fact(parts.likeness(coarse, target), 0.9, 1.0),
-        "the outline overlaps by 0.97 or more": Fact(
-            parts.overlap(module, found, picture), 0.97, 1.0
+        "the design has the letters": Fact(found["the design has the letters"], 0.98, 1.0),
+        "with nine times the rays as well": Fact(
+            found["with nine times the rays as well"], 0.9, 1.0
         ),
-        "the width within 1 %": Fact(abs(width / parts.WIDTH - 1), 0, 0.01),
+        "the outline overlaps by 0.97 or more": Fact(
+            found["the outline overlaps by 0.97 or more"], 0.97, 1.0
+        ),
+        "the width within 1 %": Fact(found["the width within 1 %"], 0, 0.01),
     }
-    figure = Figure(figsize=(7.0, 4.4), layout="constrained")
-    grid = figure.add_gridspec(2, 4, width_ratios=(1.15, 1.15, 1, 1))
-    axes = figure.add_subplot(grid[:, :2])
-    glow = np.clip(light / 6, 0, 1) ** (1 / 2.2)
-    axes.imshow(np.round(glow * 40) / 40, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
-    axes.set(xticks=[], yticks=[], title="light behind the lens")
-    axes = figure.add_subplot(grid[0, 2:])
-    axes.imshow(picture, cmap="Greys", vmin=0, vmax=1.6, extent=(0, 28, 28, 0))
-    axes.plot(*parts.close_up(start).T, color=GRAY)
-    axes.plot(*parts.close_up(found).T, "o-", color=BLUE, markersize=2.5)
-    axes.set(xticks=[], yticks=[], title="a silhouette")
-    axes = figure.add_subplot(grid[1, 2])
-    axes.imshow(stroke, cmap="Greys", vmin=0, vmax=1.6, extent=(0, 15, 15, 0))
-    t = np.linspace(0, 1, 60)
-    axes.plot(*module.bezier(guess, t).T, color=GRAY)
-    axes.plot(*module.bezier(curve, t).T, color=BLUE)
-    axes.set(xticks=[], yticks=[], title="a stroke", xlim=(0, 15), ylim=(15, 0))
-    axes = figure.add_subplot(grid[1, 3])
-    axes.imshow(heights - heights.mean(), cmap="viridis")
-    axes.set(xticks=[], yticks=[], title="the lens")
     return figure, facts
 
 

@@ -10,15 +10,30 @@
 # origin).
 
 # %%
+from importlib.util import find_spec
+
+from photograd_course import explore
+
+has_core = find_spec("photograd") is not None  # it renders more pixels and more Gaussians
+given = explore.options(
+    capture=explore.existing(),
+    pixels=400 if has_core else 120,
+    steps=1500 if has_core else 500,
+    max_count=12000 if has_core else 1200,
+    start=explore.at_least(4000 if has_core else 500, 4),
+    every=100 if has_core else 50,
+    seed=explore.at_least(0, 0),
+    frames=72,
+    box=explore.at_least(1.0, 1e-6),
+)
+
 import importlib
-import time
 from pathlib import Path
 
 import numpy as np
 import splatting as mine
 from matplotlib.figure import Figure
 from photograd_course.captures import look_at_origin, read_capture
-from photograd_course.explore import option
 from PIL import Image
 
 HARMONIC = 0.28209479177387814  # the constant spherical harmonic
@@ -59,12 +74,11 @@ def of_the_core():
     return drawn, video.write_video
 
 
-core = of_the_core()
-folder = Path(option("capture", "data"))
-given = folder / "points.npy"
-width, steps = option("pixels", 400 if core else 120), option("steps", 1500 if core else 500)
-most, begin = option("max-count", 12000 if core else 1200), option("start", 4000 if core else 500)
-every, seed, count = option("every", 100 if core else 50), option("seed", 0), option("frames", 72)
+core = of_the_core() if has_core else None
+folder = Path(given.capture or "data")
+start_points = folder / "points.npy"
+width, steps, most, begin = given.pixels, given.steps, given.max_count, given.start
+every, seed, count = given.every, given.seed, given.frames
 
 # %% [markdown]
 # ## The capture
@@ -96,7 +110,7 @@ def taken():
     """(camera, photograph) of each view; colors as a display shows them, not linear."""
     photos = list(read_capture(folder, width, 1000))
     poses = np.stack([photo.world_from_camera for photo in photos])
-    poses = poses if given.exists() else centered(poses)
+    poses = poses if start_points.exists() else centered(poses)
     views = []
     for photo, pose in zip(photos, poses, strict=True):
         tall, wide = photo.colors.shape[:2]
@@ -106,11 +120,11 @@ def taken():
 
 def cloud(rng):
     """The initial scene: a small ball at each of some points of the capture, or anywhere."""
-    if given.exists():
-        points = np.load(given).astype(np.float64)
+    if start_points.exists():
+        points = np.load(start_points).astype(np.float64)
         points = points[rng.permutation(len(points))[:begin]]
     else:
-        places = option("box", 1.0) * rng.uniform(-1, 1, (begin, 3))
+        places = given.box * rng.uniform(-1, 1, (begin, 3))
         points = np.concatenate([places, np.full((begin, 3), 0.5)], axis=1)
     means = points[:, :3]
     near = [np.sort(np.sum((means - each) ** 2, axis=1))[1:4] for each in means]
@@ -158,16 +172,16 @@ if core:
         for key in (*mine.RATES, "background")
     ]
     print(f"core:    images differ by {np.abs(a - b).max():.0e}, derivatives by {max(off):.0e}")
-    mine.picture = core[0]
     # The core sums signed contributions, so its statistics are smaller.
-    mine.THRESHOLD, mine.SMALL = mine.THRESHOLD / 10, mine.SMALL / 3
+    smaller = {"THRESHOLD": mine.THRESHOLD / 10, "SMALL": mine.SMALL / 3}
+    explore.set_constants(mine, picture=core[0], **smaller)
 
 # %% [markdown]
 # ## The fit
 # In three parts, each with smaller learning rates than the one before.
 
 # %%
-frames, done, began = [], 0, time.perf_counter()
+frames, done, watch_time = [], 0, explore.Stopwatch()
 
 
 def watch(step, now, _):
@@ -178,7 +192,7 @@ def watch(step, now, _):
         print(
             f"\rfit:     step {done + step} of {steps}, {len(now['means'])} Gaussians, "
             f"{decibels(shown, truth):.1f} dB on a held-out view, "
-            f"{time.perf_counter() - began:.0f} s ",
+            f"{watch_time} ",
             end="",
             flush=True,
         )
@@ -186,7 +200,7 @@ def watch(step, now, _):
 
 rng, rates = np.random.default_rng(seed), dict(mine.RATES)
 for share, slower in ((0.6, 1.0), (0.25, 0.3), (0.15, 0.1)):
-    mine.RATES = {key: slower * rate for key, rate in rates.items()}
+    explore.set_constants(mine, RATES={key: slower * rate for key, rate in rates.items()})
     some, limit = max(1, round(share * steps)), most if slower == 1.0 else 0
     scene, _ = mine.fit(scene, views, some, rng, background, limit, every, watch)
     done += some
@@ -194,7 +208,7 @@ shown = [mine.picture(scene, each, background)[0] for each, _ in unseen]
 scores = [decibels(got, photo) for got, (_, photo) in zip(shown, unseen, strict=True)]
 plain = [decibels(background, photo) for _, photo in unseen]
 print(
-    f"\nfit:     {done} steps in {time.perf_counter() - began:.0f} s, {len(scene['means'])} "
+    f"\nfit:     {done} steps in {watch_time}, {len(scene['means'])} "
     f"Gaussians, {np.mean(scores):.1f} dB over all held-out views "
     f"(one color has {np.mean(plain):.1f} dB)"
 )
@@ -218,6 +232,7 @@ def write_gif(name, images, milliseconds):
         large = [each.resize((3 * each.width, 3 * each.height)) for each in large]
     large[0].save(name, save_all=True, append_images=large[1:], duration=milliseconds, loop=0)
     print(f"{name}: {len(large)} images")
+    explore.show_file(name)
 
 
 write_gif("fit.gif", frames, 120)
@@ -250,5 +265,5 @@ for k, (got, (_, photo)) in enumerate(zip(shown, unseen, strict=True)):
     ):
         axes.imshow(np.clip(image, 0, 1))
         axes.set(title=title, xticks=[], yticks=[])
-figure.savefig("banana.png", dpi=100)
+explore.keep_picture(figure, "banana.png")
 print("banana.png: photographs that the fit did not see, and the same views of your Gaussians")

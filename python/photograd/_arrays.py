@@ -26,6 +26,9 @@ Axis = int | str | EllipsisType
 """A length, or a name such as "N" or "2 H" (twice H); `...` stands for any leading axes."""
 
 
+PLAIN = (int, float, str, list, tuple, dict)
+
+
 class Arguments:
     """The array arguments of one call: axes of one name have one length.
 
@@ -130,6 +133,19 @@ class Arguments:
             self._refuse(RangeError, name, expected, number)
         return number
 
+    def size(self, name: str, value: Any, *, most: int = 1 << 26) -> tuple[int, int]:
+        """`value` as (height, width) of at least one pixel and at most `most`.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: anything else.
+        """
+        array = self.array(name, value, (2,), dtype=np.int64, low=1, high=most)
+        height, width = array.tolist()
+        if height * width > most:
+            got = f"{height} x {width}"
+            self._refuse(RangeError, name, f"at most {_bound(most)} pixels", got)
+        return height, width
+
     def box(self, name: str, value: Any, axes: int = 3) -> Array:
         """Corners (2, axes), lower below upper along each axis; converted as by `array`.
 
@@ -142,9 +158,19 @@ class Arguments:
         return box
 
     def run(self, core: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
-        """What a function of the core returns; its errors name the function that was called."""
+        """What a function of the core returns; its errors name the function that was called.
+
+        Raises:
+            RangeError: numbers or objects that the core has no type for, such as 2^40 voxels.
+        """
         try:
             return core(*arguments, **named)
+        except TypeError as failure:
+            if "incompatible" not in str(failure):
+                raise
+            plain = [each for each in (*arguments, *named.values()) if isinstance(each, PLAIN)]
+            got, expected = shortened(plain), "numbers and objects that the core can hold"
+            raise RangeError(message(self.function, "arguments", expected, got)) from failure
         except Error as failure:
             _, _, rest = str(failure).partition(": ")
             raise type(failure)(f"{self.function}: {rest}") from failure

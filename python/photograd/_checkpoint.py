@@ -23,7 +23,7 @@ from photograd_course.atomic_io import atomic_write
 
 from photograd._checks import typed
 from photograd._files import read_npz
-from photograd.errors import DtypeError, IoError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, Error, IoError, RangeError, ShapeError, message
 from photograd.types import Array
 
 VERSION = 2
@@ -42,7 +42,7 @@ class Checkpoint:
     history: Array  # (n, 3): step, loss, PSNR of the batch
 
 
-def save_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+def save_checkpoint(path: Path, checkpoint: Checkpoint) -> Path:
     """Write the file atomically. Raises IoError if that fails; the old file then survives."""
     arrays: dict[str, Any] = {"history": checkpoint.history}
     arrays["meta"] = np.array(json.dumps({"version": VERSION, **checkpoint.meta}))
@@ -50,6 +50,7 @@ def save_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
         for name, array in getattr(checkpoint, prefix).items():
             arrays[f"{prefix}.{name}"] = array
     write_npz(path, arrays)
+    return path
 
 
 def write_npz(path: Path, arrays: Mapping[str, Any]) -> None:
@@ -102,6 +103,17 @@ def load_checkpoint(path: str | Path) -> Checkpoint:
     return Checkpoint(
         meta, _part(arrays, "params"), _part(arrays, "optimizer"), _part(arrays, "state"), history
     )
+
+
+def holds_steps(file: Path) -> bool:
+    """Whether a file has something to lose: all but a checkpoint from before the first step."""
+    if not file.exists():
+        return False
+    try:
+        meta = json.loads(str(read_npz("load_checkpoint", file, ["meta"])["meta"]))
+        return bool(meta["step"] != 0)
+    except (Error, KeyError, TypeError, ValueError, RecursionError):
+        return True
 
 
 def make_folder(folder: Path) -> None:

@@ -116,8 +116,14 @@ def test_lenses_that_trap_all_light() -> None:
 
 
 def test_what_cannot_be_designed() -> None:
-    with pytest.raises(RangeError, match=r"CausticDesign: target: .*a picture with light"):
-        CausticDesign(plate(), SUN, wall(), np.zeros((32, 32)))
+    for dark in (0.0, 1e-320):
+        with pytest.raises(RangeError, match=r"CausticDesign: target: .*a picture with light"):
+            CausticDesign(plate(), SUN, wall(), np.full((32, 32), dark))
+    for shape in ((2, 2), (2, 9), (9, 2)):  # a lens, but too few heights to transport light
+        with pytest.raises(ShapeError, match=r"transport_lens: lens: expected at least 3 heights"):
+            CausticDesign(plate(*shape), SUN, wall(), spots())
+        start = CausticOptions(start="plane", steps=1)
+        assert CausticDesign(plate(*shape), SUN, wall(), spots(), start).run().finished
     with pytest.raises(ShapeError, match="target"):
         CausticDesign(plate(), SUN, wall(), np.ones((8, 8)))
     with pytest.raises(RangeError, match=r"target: .*finite"):

@@ -98,7 +98,9 @@ def test_killed_twice_and_resumed_it_ends_with_the_same_bits(
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)], ids=["SIGTERM", "Ctrl-C"]
+    ("number", "code"),
+    [(signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGHUP, 129)],
+    ids=["SIGTERM", "Ctrl-C", "SIGHUP"],
 )
 def test_told_to_stop_it_saves_first(
     capture_folder: Path, tmp_path: Path, number: signal.Signals, code: int

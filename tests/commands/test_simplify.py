@@ -66,7 +66,7 @@ def test_mistakes_are_named(photograd: Photograd, tmp_path: Path) -> None:
     ball = write_ball(tmp_path / "ball.obj")
     done = photograd("simplify", ball, "--triangles", 60, "--out", tmp_path / "few.obj")
     assert done.code in (1, 2)
-    assert "a file name that ends in .glb or .npz" in " ".join(done.err.replace("│", " ").split())
+    assert "a name that ends in .glb or .npz" in " ".join(done.err.replace("│", " ").split())
     done = photograd("simplify", ball, "--triangles", 5000, "--out", tmp_path / "few.glb")
     assert done.code in (1, 2)
     assert "triangles" in done.err

@@ -133,3 +133,11 @@ def test_a_mistake_in_a_file_is_named_with_its_line(photograd: Photograd, tmp_pa
     done = photograd("trace", scene, "--out", tmp_path / "x.exr")
     assert done.code != 0
     assert "line 14: shapes.0.radius" in " ".join(done.err.split())
+
+
+def test_one_sample_says_nothing_of_the_noise(photograd: Photograd, tmp_path: Path) -> None:
+    words = ("trace", "cornell-box", "--size", 8, "--spp", 1, "--out", tmp_path / "a.png")
+    done = photograd(*words)
+    assert done.code == 0
+    assert "nan" not in done.out + done.err
+    assert "noise unknown" in done.err

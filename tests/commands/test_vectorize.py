@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd._checkpoint import holds_steps
 from photograd.images.read import read_image
 from photograd.images.write import write_png
 from photograd.vector import read_svg, render
@@ -57,3 +62,54 @@ def test_mistakes_are_named(
     done = photograd("vectorize", picture, *words)
     assert done.code != 0
     assert said in " ".join(done.err.split())
+
+
+def run_of(picture: Path, out: Path, *more: str) -> subprocess.Popen[str]:
+    words = ["vectorize", str(picture), "--curves", "20", "--steps", "400", "--out", str(out)]
+    begin = [sys.executable, "-m", "photograd_course", *words, *more]
+    return subprocess.Popen(begin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for_step(process: subprocess.Popen[str], file: Path) -> None:
+    """Until a checkpoint with a step lies there."""
+    while not holds_steps(file):
+        assert process.poll() is None, process.communicate()[1]
+        time.sleep(0.01)
+
+
+def test_killed_and_resumed_it_writes_the_same_curves(
+    photograd: Photograd, picture: Path, tmp_path: Path
+) -> None:
+    whole, out = tmp_path / "whole.svg", tmp_path / "new" / "killed.svg"
+    words = ("vectorize", picture, "--curves", 20, "--steps", 400)
+    assert photograd(*words, "--out", whole).code == 0
+    assert not (tmp_path / "whole.fit").exists()
+    process = run_of(picture, out)
+    wait_for_step(process, out.with_suffix(".fit") / "drawing.npz")
+    process.kill()
+    process.communicate()
+    assert not out.exists()
+    refused = photograd(*words, "--out", out)
+    assert refused.code == 1
+    assert "vectorize: --out: expected a name without a checkpoint" in refused.err
+    done = photograd(*words, "--out", out, "--resume")
+    assert done.code == 0, done.err
+    assert out.read_bytes() == whole.read_bytes()
+    assert [path.name for path in out.parent.iterdir()] == ["killed.svg"]
+    again = photograd(*words, "--out", out, "--resume")
+    assert again.code == 1
+    assert "vectorize: --resume: expected a run that was stopped, got no" in again.err
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_writes_what_was_found(
+    picture: Path, tmp_path: Path, number: signal.Signals
+) -> None:
+    out = tmp_path / "stopped.svg"
+    process = run_of(picture, out, "--steps", "100000")
+    wait_for_step(process, tmp_path / "stopped.fit" / "drawing.npz")
+    process.send_signal(number)
+    _, err = process.communicate()
+    assert process.returncode == 128 + number, err
+    assert "continue with --resume" in err
+    assert len(read_svg(out, linear=False).drawing.shapes) == 21

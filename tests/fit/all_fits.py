@@ -8,13 +8,14 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from photograd._fit_options import DENSITY_CONTROLS
-from photograd.capture.load import load_capture
+from photograd.capture import Capture, load_capture
 from photograd.fields import TexturedMesh, fittable
 from photograd.fitting import options_for
 from photograd.fitting.loop import Fit
@@ -56,27 +57,40 @@ def digest(arrays: Mapping[str, Any]) -> str:
     return total.hexdigest()
 
 
-def digests(folder: Path) -> dict[str, str]:
-    """Of everything that a checkpoint holds after a fit of each kind, background learned."""
+def fits(capture: Capture) -> Iterator[tuple[str, Callable[[], Fit]]]:
+    """A name, and what begins a short fit, of each kind with each density control it has."""
     assert set(JOBS) == set(fittable())
-    capture = load_capture(folder)
-    x = np.linspace(0.1, 3.0, 999, dtype=np.float32)
-    found = {"of the processor": digest({"exp": np.exp(x)})}
     first = {"textured_mesh": Model.of(TexturedMesh.of_mesh(cube()))}
     for name, changes in JOBS.items():
         for control in DENSITY_CONTROLS if name == "gaussians" else ("mcmc",):
             options = options_for(
                 name, seed=1, background="learned", density_control=control, **changes
             )
-            fit = Fit.start(capture, options, start_from=first.get(name))
-            while fit.step_number < options.steps:
-                fit.step()
-            parts = fit.model.params, fit.model.state(), fit.optimizer.state()
-            arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
-            rest = {"background": fit.background, "history": np.array(fit.history)}
-            found[f"{name}, {control}"] = digest(arrays | rest)
-            for next_one in STARTS_FROM.get(name, ()):
-                first[next_one] = Model(fit.model, None, options, {}, np.zeros((0, 3)))
+            begin = partial(Fit.start, capture, options, start_from=first.get(name))
+            yield f"{name}, {control}", begin
+            if name in STARTS_FROM:
+                field = stepped(begin()).model
+                model = Model(field, None, options, {}, np.zeros((0, 3)))
+                first |= dict.fromkeys(STARTS_FROM[name], model)
+
+
+def stepped(fit: Fit) -> Fit:
+    """The fit at its end."""
+    while fit.step_number < fit.steps:
+        fit.step()
+    return fit
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Of everything that a checkpoint holds after a fit of each kind, background learned."""
+    x = np.linspace(0.1, 3.0, 999, dtype=np.float32)
+    found = {"of the processor": digest({"exp": np.exp(x)})}
+    for name, begin in fits(load_capture(folder)):
+        fit = stepped(begin())
+        parts = fit.model.params, fit.model.state(), fit.optimizer.state()
+        arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
+        rest = {"background": fit.background, "history": np.array(fit.history)}
+        found[name] = digest(arrays | rest)
     return found
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.commands.render import render
 from photograd.errors import RangeError
 from photograd.fitting.fog import GRAY, THICK, fog_model
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import write_vdb
 from photograd.representation import RayBatch, RenderOptions
+from photograd_course.cli import run
 from PIL import Image
 
 VOXEL = np.diag([0.25, 0.25, 0.25, 1.0])
@@ -70,7 +70,8 @@ def test_bad_input_is_refused() -> None:
 
 def test_the_command_draws_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_vdb(tmp_path / "block.vdb", [block()])
-    render(tmp_path / "block.vdb", frames=2, out=tmp_path / "frames", size=24, as_json=True)
+    words = ["--out", str(tmp_path / "frames"), "--frames", "2", "--size", "24", "--json"]
+    assert run(["render", str(tmp_path / "block.vdb"), *words]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["frames"] == 2
     picture = np.asarray(Image.open(tmp_path / "frames" / "frame_0000.png").convert("L"))
     assert picture[12, 12] > 200

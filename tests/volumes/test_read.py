@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.commands.render import render
 from photograd.errors import IoError, RangeError
 from photograd.fitting.fog import fog_model, load_fog
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.volumes import Volume, read_volume
+from photograd_course.cli import run
 from PIL import Image
 
 from tests.volumes.files import mitsuba, nifti, values, vtk
@@ -162,7 +162,8 @@ def test_the_command_draws_a_scan(tmp_path: Path, capsys: pytest.CaptureFixture[
     path = tmp_path / "scan.nii.gz"
     path.write_bytes(gzip.compress(nifti(solid, pixdim=(1, 1, 1, 1))))
     frames = tmp_path / "frames"
-    render(path, frames=1, out=frames, size=32, window=(100, 200), as_json=True)
+    words = ["--frames", "1", "--size", "32", "--window", "100", "200", "--json"]
+    assert run(["render", str(path), "--out", str(frames), *words]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[-1])["frames"] == 1
     picture = np.asarray(Image.open(frames / "frame_0000.png").convert("L"))
     assert picture[16, 16] > 200

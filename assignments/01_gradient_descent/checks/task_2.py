@@ -32,8 +32,7 @@ def a_parabola_contracts_by_one_factor(t):
     "01.2.verdict",
     points=3,
     sole="what students can run; hidden checks find its mistakes as well",
-    hint="If 01.2.rate fails too, repair that first. The flag compares the last value with the "
-    "first, Eq. (8).",
+    hint="The flag compares the last value with the first, Eq. (8).",
 )
 def the_verdict_changes_at_the_bound(t):
     """Just below tau = 2 / lambda the run converges, just above it diverges and says so."""

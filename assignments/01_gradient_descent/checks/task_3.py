@@ -27,12 +27,7 @@ def each_eigenvector_has_a_factor_of_its_own(t):
     t.require(not wrong, "the flag is True for a run that converges")
 
 
-@check(
-    "01.3.stability",
-    points=4,
-    hint="If 01.3.rates fails too, repair that first. The flag compares the last value with the "
-    "first, Eq. (8).",
-)
+@check("01.3.stability", points=4, hint="The flag compares the last value with the first, Eq. (8).")
 def the_largest_curvature_decides(t):
     """The flag changes at tau = 2 / lambda_max, and looks at the last and the first value."""
     curvatures = np.array([0.1, 1.0, 4.0])

@@ -14,7 +14,7 @@ ACCEPTED = Tolerance(
     1e-7, "right gradients have an error of 1e-10, one-sided differences report 3e-6", floor=1.0
 )
 ONE_BY_ONE = "two sides, one coordinate at a time, and a new copy of x for each point"
-COPIES = "move copies of x, a new one each time"
+COPIES = "often x itself is moved: move copies of it, a new one each time"
 VERDICT = Number(finite=False)
 
 
@@ -45,7 +45,7 @@ def right_gradients_are_accepted(t):
         # Where x has changed, the second call begins elsewhere.
         calls = len(asked) // 2
         same = np.array_equal(asked[:calls], asked[calls:])
-        t.require(same, "grad_check has changed the x that it was given", hint=COPIES)
+        t.require(same, "grad_check asks for other points when it is called again", hint=COPIES)
         entries = "1 entry" if n == 1 else f"{n} entries"
         t.close(
             f"error of a right gradient of {entries}",

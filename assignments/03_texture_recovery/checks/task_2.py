@@ -53,7 +53,7 @@ def the_adjoint_is_the_transpose(t):
 @check(
     "03.2.repeated",
     points=4,
-    hint="d_T[rows, columns] += values adds once where an index occurs twice",
+    hint="often: d_T[rows, columns] += values, which adds once where an index occurs twice",
     sole="names the mistake of a scatter that forgets",
 )
 def repeated_places_add_up(t):

@@ -77,7 +77,7 @@ def steps_can_be_chained(t):
 @check(
     "03.5.start",
     points=1,
-    hint="T0 itself has changed: copy it first",
+    hint="often T0 itself is written into, or given back: copy it first",
     sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
@@ -87,7 +87,7 @@ def the_start_is_left_alone(t):
     target = t.rng.uniform(0.0, 1.0, (60, 2))
     once = recover(t, T0, uv, target, 2)
     again = t.call("adapters.recover_again", T0, uv, target, 2, returns=recovered(shape, 2))
-    t.require(agree(again, once), "recover_texture has written into its argument T0")
+    t.require(agree(again, once), "a second fit from the same T0 ends elsewhere")
 
 
 @check(

@@ -76,7 +76,7 @@ def models_with_a_known_integral(t):
 @check(
     "04.1.burley",
     points=2,
-    hint="fix the checks above first",
+    hint="equation (5) once more, for a BRDF that is brighter toward the horizon",
     sole="the first discovery: a famous model that is not energy-conserving",
 )
 def a_fit_that_makes_light(t):

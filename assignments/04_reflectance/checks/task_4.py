@@ -156,7 +156,7 @@ def samples_have_the_density(t):
     "04.4.mean",
     points=2,
     needs=("ggx_lobe", "ggx_pdf"),
-    hint="fix 04.4.chi first",
+    hint="a weight is your lobe times the cosine over your density, at your own samples",
     sole="what it is for: the mean of the weights is the furnace's albedo",
 )
 def weights_average_to_the_albedo(t):

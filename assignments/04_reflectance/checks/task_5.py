@@ -88,7 +88,7 @@ def reciprocal_and_above(t):
     "04.5.energy",
     points=1,
     tolerance=TABLE,
-    hint="fix the checks above first",
+    hint="equation (20) once more, summed over the hemisphere",
     sole="what the furnace says: half metal lies between its ends",
 )
 def what_white_returns(t):

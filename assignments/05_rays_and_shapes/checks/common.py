@@ -48,21 +48,28 @@ def built(t, low, high):
     parts = Items(
         Array((None, 2, 3)), WHOLE, WHOLE, WHOLE, names=("boxes", "first", "count", "order")
     )
-    boxes, first, count, order = t.call("build_bvh", low, high, returns=parts)
+    tree = t.call("build_bvh", low, high, returns=parts)
+    require_tree(t, len(low), tree)
+    return tree
+
+
+def require_tree(t, primitives_in_all, tree):
+    """Every rule of the form of a tree over so many primitives."""
+    boxes, first, count, order = tree
     nodes = len(boxes)
     t.require(nodes == len(first) == len(count) > 0, "boxes, first and count differ in length")
     t.require(
-        np.array_equal(np.sort(order), np.arange(len(low))),
+        np.array_equal(np.sort(order), np.arange(primitives_in_all)),
         "order must hold the number of each primitive once",
     )
     t.require(bool(((count >= 0) & (count <= LEAF)).all()), f"a leaf holds 1 to {LEAF} primitives")
-    waiting, used, owned = [0], np.zeros(nodes, np.int64), np.zeros(len(low), np.int64)
+    waiting, used, owned = [0], np.zeros(nodes, np.int64), np.zeros(primitives_in_all, np.int64)
     while waiting:
         node = waiting.pop()
         used[node] += 1
         at, primitives = int(first[node]), int(count[node])
         t.require(
-            at >= 0 and at + (primitives or 2) <= (len(low) if primitives else nodes),
+            at >= 0 and at + (primitives or 2) <= (primitives_in_all if primitives else nodes),
             "first points beyond the end",
         )
         owned[at : at + primitives] += 1
@@ -71,7 +78,6 @@ def built(t, low, high):
             waiting += [at, at + 1]
     t.require(bool((used == 1).all()), "a node belongs to no parent")
     t.require(bool((owned == 1).all()), "a primitive is in no leaf, or in several")
-    return boxes, first, count, order
 
 
 class Scene:

@@ -87,7 +87,7 @@ def a_plane_does_not_shade_itself(t):
     "06.2.traced",
     points=2,
     needs=("rasterize", "hit_sphere", "hit_triangle"),
-    hint="if 06.2.texels and 06.2.bias pass, look at your rasterize and at assignment 05",
+    hint="the experiment also uses your rasterize, and your hit_sphere and hit_triangle of 05",
     sole="the technique against the truth",
 )
 def shadows_are_those_of_rays(t):

@@ -113,7 +113,7 @@ def light_is_linear(t):
     "06.3.forward",
     points=2,
     needs=("gltf", "rasterize"),
-    hint="if 06.3.sun and 06.3.rest pass, look at your rasterize",
+    hint="the experiment also uses your rasterize, and your gltf of 04",
     sole="forward and deferred: each pixel's light depends on its own surface alone",
 )
 def forward_is_deferred(t):

@@ -80,7 +80,7 @@ def the_adjoint_agrees_with_finite_differences(t):
 @check(
     "06.5.exposure",
     points=1,
-    hint="handout, equations (21) to (23): first make 06.5.differences pass, which tells more",
+    hint="handout, equations (21) to (23): the derivative with respect to the exposure",
     sole="what the adjoint is for",
 )
 def an_exposure_is_found_by_descent(t):

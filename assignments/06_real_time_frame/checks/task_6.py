@@ -1,5 +1,7 @@
 """Task 06.6, public checks."""
 
+from itertools import product
+
 import numpy as np
 from photograd_course.grading import Array, Items, checks_for
 from photograd_course.grading.adjoint_gate import (
@@ -78,9 +80,10 @@ def a_step_in_depth(t):
     normals = np.tile([0.0, 0.0, -1.0], (height, width, 1))
     r, k, factor = 1.5, 2.5, 1.4
     row, column, moves = 4, 10, np.array([5, 2])
-    offset = (moves + np.array([0.2, -0.3])) * far / (REACH * focal)
     right, found = [], []
-    for step in (0.0, 0.1, 0.2, 0.4):
+    # From the center of the pixel: a little to the right and up of the other's, then left and down.
+    for step, aside in product((0.0, 0.1, 0.2, 0.4), ((0.2, -0.3), (-0.3, 0.2))):
+        offset = (moves + np.array(aside)) * far / (REACH * focal)
         depth = np.full((height, width), far)
         depth[:, 13:] = far - step
         offsets = np.zeros((height, width, 2, 2))
@@ -97,7 +100,7 @@ def a_step_in_depth(t):
         open_sky, _ = occluded(t, depth, *rest, np.zeros((height, width)))
         found.append(open_sky[:, 8:13].mean())
     t.close("open sky of a pixel", np.array(found[::2]), np.array(right), reveal=True)
-    t.require(bool((np.diff(found[1::2]) < 0).all()), "a higher step hides more")
+    t.require(bool((np.diff(found[1::4]) < 0).all()), "a higher step hides more")
 
 
 @check(
@@ -135,7 +138,7 @@ def the_adjoint_agrees_with_finite_differences(t):
     points=1,
     seconds=60.0,
     needs=("rasterize", "hit_sphere", "hit_triangle"),
-    hint="if the other checks of 06.6 pass, look at your rasterize and at assignment 05",
+    hint="the experiment also uses your rasterize, and your hit_sphere and hit_triangle of 05",
     sole="the experiment: descent through the adjoint, toward the truth",
 )
 def settings_are_found_by_descent(t):

@@ -95,9 +95,7 @@ def another_proposal_has_the_same_mean(t):
     t.require(
         bool(apart.any(axis=1).mean() > 0.5),
         "for the same random numbers a rougher proposal gives the same estimates",
-        hint=(
-            "`proposal` is not used: directions, densities and weights come from it if it is given"
-        ),
+        hint=("directions, densities and weights come from `proposal` if it is given"),
     )
 
 

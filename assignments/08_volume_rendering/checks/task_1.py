@@ -120,7 +120,7 @@ def cutting_a_step_changes_nothing(t):
 @check(
     "08.1.extremes",
     points=2,
-    hint="fix the checks above first; if they pass: handout, end of section 1",
+    hint="handout, end of section 1",
     sole="all digits, from a thin medium to a wall",
 )
 def thin_air_and_walls(t):

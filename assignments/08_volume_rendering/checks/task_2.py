@@ -178,8 +178,8 @@ def centimeters_instead_of_meters(t):
 @check(
     "08.2.walls",
     points=2,
-    hint="fix 08.2.differences first; if it passes: behind a wall T is 0, which cannot be "
-    "divided by, and in a thin medium 1 - exp(-x) loses digits",
+    hint="behind a wall T is 0, which cannot be divided by, and in a thin medium 1 - exp(-x) loses "
+    "digits",
     sole="finite numbers where a formula divides 0 by 0",
 )
 def walls_and_thin_air(t):

@@ -33,8 +33,7 @@ def the_loss_of_known_errors(t):
 
 ROOT = "You return the root of the loss."
 APART = (
-    "Loss and derivative do not belong together: one of them divides by something that the "
-    "other does not. See 09.3.values."
+    "The loss of errors that can be worked out by hand is wrong already: begin with 09.3.values."
 )
 
 
@@ -74,7 +73,7 @@ def the_cotangent_agrees_with_differences(t):
 
 
 RENDERER = (
-    "your cotangent is right: what lies between it and the voxels is volume_rendering.py; "
+    "your cotangent agrees with your loss: between it and the voxels lies volume_rendering.py; "
     "photograd course check 08"
 )
 
@@ -85,7 +84,7 @@ RENDERER = (
     calls=("mse_and_cotangent", "render_rays", "render_adjoint"),
     needs=("ray_batch",),
     seconds=PATIENCE,
-    hint="fix what fails above first",
+    hint="the chain rule, from the pixels to the voxels",
     sole="no fit before the gradient is proved: with your renderer of 08",
 )
 def from_photographs_to_voxels(t):

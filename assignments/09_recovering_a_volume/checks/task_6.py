@@ -92,8 +92,7 @@ def the_first_steps(t):
     "09.6.draws",
     points=3,
     tolerance=CHAINED,
-    hint="if 09.6.first fails too, look there first; one draw in each step, all of it used, and "
-    "rng for nothing else",
+    hint="one draw in each step, all of it used, and rng for nothing else",
     sole="asks which pixels a step sees",
 )
 def each_step_draws_its_own_pixels(t):
@@ -146,12 +145,12 @@ def the_first_step_goes_down(t):
 @check(
     "09.6.start",
     points=1,
-    hint="an array of the start has changed, or is given back: copy it first",
+    hint="often an array of the start is written into, or given back: copy it first",
 )
 def the_start_is_left_alone(t):
     """A second fit from the same array finds what the first one did; without steps a copy comes."""
     views, grid = random_views(t, 1, 2, 2), small_start(t, (2, 2, 2))
     again = fitted(t, views, grid, 2, adapter="fit_again")
     same = agree(again, fitted(t, views, grid, 2))
-    t.require(same, "fit_volume has written into the array that it was given, or gives it back")
+    t.require(same, "a second fit from the same start ends elsewhere")
     t.close("volume after no steps", fitted(t, views, grid, 0)[0], grid, CHAINED)

@@ -48,8 +48,8 @@ def the_adjoint_is_the_transpose(t):
         got > 0.999 * whole,
         f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
         f"the samples have {whole:.6g}",
-        hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
-        "not accumulate; use `np.add.at`",
+        hint="often: `d[row] += ...`, which keeps only the last contribution to a row that occurs "
+        "twice; use `np.add.at`",
     )
     for count, samples, channels in ((6, 9, 4), (40, 15, 1), (1, 3, 2)):
         row, weight = some_samples(t, count, samples)

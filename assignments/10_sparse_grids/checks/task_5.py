@@ -42,9 +42,7 @@ def small_case(t, n=8, views=3, size=5):
     return n, voxels[order], values[order], rays, t.rng.uniform(0.0, 1.0, (rays.shape[1], 3))
 
 
-BETWEEN = (
-    "after the last round the list is made anew; it must not be: between two rounds only, see (14)"
-)
+BETWEEN = "often the list is made anew after the last round: between two rounds only, see (14)"
 
 
 def require_same_list(t, got, voxels):
@@ -119,9 +117,7 @@ def two_rounds(t, *given):
     except StudentFailure as failure:
         if failure.reason != "raised":
             raise
-        advice = (
-            "begin each round with a new Adam and new samples: the old ones are of other voxels"
-        )
+        advice = "often Adam or samples of the first round are taken, which are of other voxels"
         details = {"advice": advice, "exception": failure.private}  # which public checks may show
         if failure.line is not None:
             details["line"] = list(failure.line)
@@ -147,7 +143,7 @@ def rounds_can_be_chained(t):
         following, start, kept = next_start(t, n, voxels, values, rays, threshold, grow)
         carried = fitted(t, n, voxels, values, rays, target, 2, 0, threshold, grow)
         same_voxels(t, "voxels after a round without steps", n, carried[0], following)
-        hint = "values stand with the wrong voxels: look up their rows in a table of the old ones"
+        hint = "often values stand with other voxels: look up their rows in a table of the old ones"
         t.close("values carried over", carried[1][kept], start[kept], FAITHFUL, hint=hint)
         if not kept.all():
             hint = "handout, equation (15): new voxels begin as START"
@@ -166,11 +162,11 @@ def rounds_can_be_chained(t):
 @check(
     "10.5.start",
     points=1,
-    hint="an array of the start has changed: copy it first",
+    hint="often an array of the start is written into, or given back: copy it first",
     sole="what students can run; a hidden check finds its mistake as well",
 )
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
     given = (*small_case(t), 2, 2, 0.01, 1)
     same = agree(fitted(t, *given, function="adapters.fit_again"), fitted(t, *given))
-    t.require(same, "fit_sparse has written into an array that it was given")
+    t.require(same, "a second fit from the same start ends elsewhere")

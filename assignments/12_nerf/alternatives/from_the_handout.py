@@ -55,7 +55,7 @@ def sample_distances(edges, weights, u):
                 spans.append((ends[k], ends[k + 1]))
         found = np.zeros(n)
         for (a, b), (low, high) in zip(shares, spans, strict=True):
-            here = (v >= a) & (v < b)
+            here = (v >= a) & ((v < b) | (b == shares[-1][1]))
             found[here] = low + (high - low) * (v[here] - a) / (b - a)
         rows.append(found)
     return np.array(rows).reshape(u.shape)

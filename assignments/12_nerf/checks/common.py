@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Record, Tolerance
 
-# Evidence: worst of the solution and three alternatives; every one of 80 named wrong solutions that
-# a tolerance decides about is off by ten times the tolerance or more.
+# Evidence: worst of the solution and three alternatives; every named wrong solution that a
+# tolerance decides about is off by ten times the tolerance or more.
 EXACT = Tolerance(1e-11, "right ones differ by at most 2e-14, wrong ones by more than 1e-10")
 GATE = Tolerance(1e-6, "finite differences leave 6e-8, wrong ones are off by more than 1e-5")
 KINK = 1e-3  # finite differences move nothing across the kink of a ReLU

@@ -40,7 +40,8 @@ def known_features(t):
 @check(
     "12.1.doubling",
     points=2,
-    hint="the next band has twice the frequency, not one half turn more",
+    hint="handout, equation (4): bands double their frequency; the columns are sorted by band, "
+    "then sines and cosines, then coordinates",
     sole="at points that no table has, for many bands",
 )
 def each_band_doubles_the_one_before(t):

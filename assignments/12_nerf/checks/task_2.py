@@ -51,13 +51,14 @@ def one_linear_layer(t):
 @check(
     "12.2.differences",
     points=5,
-    hint="handout, equations (6) to (8): each layer in reverse order; the ReLU before or after?",
+    hint="handout, equations (6) to (8): the layers in reverse order; is each ReLU in its place?",
     sole="the gradient itself, without the reference",
 )
 def the_backward_pass_agrees_with_differences(t):
     """A small change of a weight, a bias or an input changes the output as you say."""
-    for sizes, rows in (((3, 5, 4, 2), 3), ((2, 6, 1), 4)):
-        layers, x, _, g = case(t, sizes, rows)
+    # Between layers of equal width a wrong matrix or mask has the right shape.
+    for sizes, rows in (((3, 5, 4, 2), 3), ((3, 4, 4, 2), 3), ((2, 6, 1), 4)):
+        layers, x, activations, g = case(t, sizes, rows)
         d_layers, d_x = derivatives(t, layers, x, g)
         point = {f"{'Wb'[k % 2]}{k // 2}": array for k, array in enumerate(layers)} | {"x": x}
 
@@ -70,6 +71,8 @@ def the_backward_pass_agrees_with_differences(t):
             expected = central_differences(forward, point, group, g)
             t.require(bool(expected.any()), "not telling")
             t.close(f"d_{group}", got, expected)
+    parts = Items(like(layers), Array(x.shape), names=("d_layers", "d_x"))
+    t.look("mlp_backward", layers, activations, g, returns=parts)
     d_layers, d_x = derivatives(t, layers, x, 0.0 * g)
     require_zero_for_zero(t, {"x": d_x} | dict(zip("Wbvc", d_layers, strict=True)))
 
@@ -81,15 +84,20 @@ ENGINE = "engine.py, your assignment 02, is wrong; photograd course check 02"
     "12.2.graph",
     points=3,
     tolerance=GRAPH,
-    hint="fix what fails above first",
+    hint="the same derivatives twice: which of the two do the checks above confirm?",
     sole="two backward passes written by the same student, one by hand and one by a graph",
 )
 def the_graph_says_the_same(t):
     """Your graph of assignment 02, a Value for each number, gives the same derivatives."""
     a, b = float(t.rng.uniform(0.5, 2.0)), float(t.rng.uniform(0.5, 2.0))
     known = t.call("adapters.small_graph", a, b, returns=Array((2,)))
-    t.close("gradients of max(a b, 0) + a a", known, np.array([b + 2 * a, a]), hint=ENGINE)
-    layers, x, _, g = case(t, (2, 4, 3, 2), 3)
+    t.close(
+        "engine.py of 02: gradients of max(a b, 0) + a a",
+        known,
+        np.array([b + 2 * a, a]),
+        hint=ENGINE,
+    )
+    layers, x, _, g = case(t, (2, 4, 4, 3), 4)
     by_hand = derivatives(t, layers, x, g)
     by_graph = derivatives(t, layers, x, g, "graph_gradients")
     names = [f"d_{'Wb'[k % 2]}{k // 2}" for k in range(len(layers))]
@@ -114,7 +122,7 @@ def waves(t, side):
     points=3,
     seconds=30.0,
     needs=("positional_encoding",),
-    hint="if 12.1 or 12.2.differences fails, look there first",
+    hint="the fit uses positional_encoding, and mlp_backward with two hidden layers of one width",
     sole="the encoding and the backward pass together, on the handout's first experiment",
 )
 def a_picture_needs_the_encoding(t):

@@ -88,7 +88,7 @@ def the_first_steps(t):
 @check(
     "12.6.start",
     points=1,
-    hint="an array of the start has changed: Adam.step returns new ones",
+    hint="often an array of the start is written into, or given back: Adam.step returns new ones",
     sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
@@ -97,5 +97,5 @@ def the_start_is_left_alone(t):
     same = agree(
         trained(t, views, network, 2, adapter="train_again"), trained(t, views, network, 2)
     )
-    t.require(same, "train_nerf has written into the arrays that it was given")
+    t.require(same, "a second training from the same start ends elsewhere")
     close_networks(t, "after no steps", trained(t, views, network, 0)[0], network)

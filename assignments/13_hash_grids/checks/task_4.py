@@ -47,8 +47,8 @@ def the_table_by_the_transpose(t):
 @check(
     "13.4.collisions",
     points=3,
-    hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does not "
-    "accumulate; use `np.add.at` or `np.bincount`",
+    hint="often: `d[row] += ...`, which keeps only the last contribution to a row that occurs "
+    "twice; use `np.add.at` or `np.bincount`",
     sole="a thousand points in eight rows",
 )
 def rows_that_are_shared_sum_up(t):

@@ -83,14 +83,14 @@ def each_step_is_made_of_your_functions(t):
 @check(
     "13.6.start",
     points=1,
-    hint="an array of the start has changed: copy it first",
+    hint="often an array of the start is written into, or given back: copy it first",
     sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
     """Training twice from the same arrays gives the same; without steps nothing changes."""
     given = small_case(t, 4)
     same = agree(trained(t, *given, function="adapters.train_again"), trained(t, *given))
-    t.require(same, "train_hash_grid has written into an array that it was given")
+    t.require(same, "a second training from the same start ends elsewhere")
     table, weights, _ = trained(t, *given[:2], given[2][:0], *given[3:])
     t.require(np.array_equal(table, given[4]), "without steps the table stays as it is")
     for mine, w in zip(weights, given[5], strict=True):

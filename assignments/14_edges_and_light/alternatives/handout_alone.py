@@ -55,6 +55,8 @@ def edge_sampling_backward(vertices, inside, outside, d_image, u):
         mine = (u * perimeter >= covered) & (u * perimeter < covered + lengths[k])
         if k == count - 1:
             mine = u * perimeter >= covered
+        if lengths[k] == 0:
+            continue
         t = (u[mine] * perimeter - covered) / lengths[k]
         covered += lengths[k]
         x = (1 - t)[:, None] * vertices[k] + t[:, None] * after[k]

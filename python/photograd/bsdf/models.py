@@ -26,6 +26,7 @@ import numpy.typing as npt
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._registry import ModelParameters, Registry, Values
+from photograd._typed import typed_call
 from photograd.types import Array
 
 METALS = {
@@ -43,6 +44,7 @@ saturated. Values go into a model as they are: `model.f({"roughness": 0.3, **MET
 # Reflectance models: what part of light from wi a surface sends towards wo, and the derivatives.
 
 
+@typed_call
 @dataclass(frozen=True)
 class BsdfModel:
     """One registered reflectance model.
@@ -139,6 +141,7 @@ class BsdfModel:
         return values
 
 
+@typed_call
 def registry(core: ModuleType | Any = _core) -> Registry[BsdfModel]:
     """All reflectance models of a compiled module, by name."""
     models = {

@@ -12,6 +12,7 @@ from photograd_course.portable_math import matmul, norm
 
 from photograd._arrays import Arguments
 from photograd._checks import require_instance
+from photograd._typed import typed_call
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
@@ -103,6 +104,7 @@ def _carve(
 # Does a camera see a box? Two convex bodies are apart exactly if some axis separates them.
 
 
+@typed_call
 def sees_box(camera: Camera, box: FloatArray) -> bool:
     """Whether any part of a (2, 3) box lies inside the viewing pyramid.
 
@@ -128,11 +130,13 @@ def sees_box(camera: Camera, box: FloatArray) -> bool:
     return not bool((pyramid_below & box_above & ~degenerate).any())
 
 
+@typed_call
 def blind_cameras(views: Sequence[View], box: FloatArray) -> tuple[str, ...]:
     """Names of the views that see no part of the (2, 3) box."""
     return tuple(view.name for view in views if not sees_box(view.camera, box))
 
 
+@typed_call
 def require_views_of(views: Sequence[View], box: FloatArray) -> None:
     """Refuse a box that some camera does not see.
 
@@ -173,6 +177,7 @@ MAX_VIEWS = 60
 """Enough silhouettes for a box; more only take time."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Bounds:
     """A box and how it was found.
@@ -188,6 +193,7 @@ class Bounds:
     blind: tuple[str, ...]
 
 
+@typed_call
 def estimate_bounds(capture: Capture) -> Bounds:
     """Box around the scene, by the first rule that applies.
 

@@ -9,10 +9,12 @@ import numpy.typing as npt
 from photograd_course.portable_math import matmul
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.frames import check_pose, invert_rigid
 from photograd.types import FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Camera:
     """Pinhole camera in the world frame of the project (right-handed, +Y up).

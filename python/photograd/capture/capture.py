@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._notebook import EDGE, as_html, png_of_sheet, sheet
+from photograd._typed import typed_call
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, message
 from photograd.images.read import ColorSpace
@@ -47,6 +48,7 @@ def hold_out(views: Sequence[View]) -> Split:
 # What a capture is: posed photographs, split into training and held-out views.
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Capture:
     """Posed photographs of one scene, in the world frame of the project.

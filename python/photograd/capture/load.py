@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from photograd._checks import require_path
+from photograd._typed import typed_call
 from photograd.capture.assemble import is_file
 from photograd.capture.blender import load_blender
 from photograd.capture.capture import Capture
@@ -18,6 +19,7 @@ from photograd.images.read import ColorSpace
 _NAME = "load_capture"
 
 
+@typed_call
 def load_capture(
     path: str | Path,
     *,

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._extras import import_extra
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.types import FloatArray
@@ -34,6 +35,7 @@ class Lens(Protocol):
         """Which ideal points (N, 2) lie where the lens maps one to one."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class Distortion:
     """The radial (k1, k2) and tangential (p1, p2) model [Brown1966]; all zero is a pinhole.
@@ -150,6 +152,7 @@ class Distortion:
         return inside & (determinant > 0.0)
 
 
+@typed_call
 @dataclass(frozen=True)
 class FisheyeDistortion:
     """The equidistant model with four radial coefficients [Kannala2006, eq. 6].
@@ -194,6 +197,7 @@ class FisheyeDistortion:
         return inside
 
 
+@typed_call
 @dataclass(frozen=True)
 class ColmapLens:
     """A lens of any other model of COLMAP, as pycolmap computes it (extra `sfm`).
@@ -279,6 +283,7 @@ def source_positions(camera: Camera, lens: Lens) -> tuple[FloatArray, npt.NDArra
     return positions, valid
 
 
+@typed_call
 def undistort_image(
     image: npt.NDArray[np.float32], camera: Camera, lens: Lens
 ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:

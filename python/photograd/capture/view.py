@@ -12,6 +12,7 @@ from photograd_course.color import srgb_encode
 from photograd_course.portable_math import matmul
 
 from photograd._notebook import EDGE, png, smaller
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.undistort import Lens, undistort_image
 from photograd.errors import IoError, message
@@ -29,6 +30,7 @@ def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArr
     return srgb_encode(color) if color_space == "linear" else color
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class View:
     """One photograph and its camera. Pixels are read when asked for and not kept.

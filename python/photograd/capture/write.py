@@ -18,6 +18,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._files import leads_outside
+from photograd._typed import typed_call
 from photograd.capture.assemble import box_from_source
 from photograd.capture.camera import Camera
 from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, invert_rigid
@@ -123,6 +124,7 @@ Frame: TypeAlias = tuple[str, Camera, ImageArray, ImageArray | None]
 (H, W, 4) premultiplied by alpha, or None."""
 
 
+@typed_call
 def write_blender_capture(
     path: Path,
     splits: Mapping[str, Sequence[Frame]],

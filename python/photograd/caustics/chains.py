@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.caustics.intersections import (
     Point,
     dot,
@@ -58,6 +59,7 @@ class _Step:
     factor: FloatArray  # (N,) of power before the surface
 
 
+@typed_call
 @dataclass(eq=False)
 class Chains:
     """Where R rays end up.
@@ -81,6 +83,7 @@ class Chains:
     steps: list[_Step] = field(default_factory=list, repr=False)
 
 
+@typed_call
 class SpecularScene:
     """Surfaces ready for `trace_chains`; the hierarchy over their triangles is built once."""
 
@@ -94,10 +97,11 @@ class SpecularScene:
             RangeError: no surface.
             SceneError: meshes that cannot be traced.
         """
+        surfaces = list(surfaces)
         if not surfaces:
             got = "none"
             raise RangeError(message("SpecularScene", "surfaces", "at least one", got))
-        self.surfaces = list(surfaces)
+        self.surfaces = surfaces
         self._meshes = [i for i, s in enumerate(surfaces) if isinstance(s, SpecularMesh)]
         parts = [s for s in surfaces if isinstance(s, SpecularMesh)]
         corners = [part.vertices[part.faces].reshape(-1, 3) for part in parts]
@@ -138,6 +142,7 @@ class SpecularScene:
         return surface, primitive
 
 
+@typed_call
 def trace_chains(
     scene: SpecularScene,
     origins: Array,
@@ -255,6 +260,7 @@ def _triangles(mesh: SpecularMesh, primitive: Array) -> tuple[FloatArray, FloatA
     return mesh.vertices[corner], None if mesh.normals is None else mesh.normals[corner]
 
 
+@typed_call
 def trace_chains_backward(
     scene: SpecularScene, chains: Chains, d_origin: Array, d_direction: Array, d_factor: Array
 ) -> list[SurfaceGradient]:

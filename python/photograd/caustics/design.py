@@ -27,7 +27,8 @@ from photograd_course.schedules import exponential
 
 from photograd._arrays import Arguments
 from photograd._checks import require_instance
-from photograd._descend import Progress, descend
+from photograd._descend import Progress, Run, changing, descend
+from photograd._typed import typed_call
 from photograd.caustics.chains import trace_chains_backward
 from photograd.caustics.lens import Lens
 from photograd.caustics.light import Light, check_light
@@ -42,6 +43,8 @@ from photograd.errors import Error, RangeError, message
 from photograd.transport.particles import IrradianceSensor
 from photograd.types import Array, FloatArray
 
+DARK = 1e-290
+"""Pictures that sum up to less have no light: scaled to a power, their numbers would overflow."""
 BEYOND = 8.0
 """Loss of all power one cell beyond the receiver."""
 MEASURED = 8
@@ -50,6 +53,7 @@ MEMORY = 0.95
 """Adam's beta_2."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class CausticResult:
     """What was found.
@@ -73,6 +77,7 @@ class CausticResult:
     seconds: float
 
 
+@typed_call
 class CausticDesign:
     """A design in progress.
 
@@ -124,8 +129,9 @@ class CausticDesign:
         size = (receiver.height, receiver.width)
         picture = Arguments(name, np.float64).array("target", target, size, (*size, "C"), low=0.0)
         picture = picture if picture.ndim == 2 else picture.mean(axis=2)
-        if not float(picture.sum()) > 0:
-            raise RangeError(message(name, "target", "a picture with light", "a black one"))
+        if not float(picture.sum()) > DARK:
+            expected, got = "a picture with light", f"one that sums up to {picture.sum():.3g}"
+            raise RangeError(message(name, "target", expected, got))
         if self.options.start == "transport":
             self.lenses[-1] = transport_lens(self.lenses[-1], light, receiver, picture)
         found = measure(self.lenses, light, receiver, seed=self.options.seed, rays=2)
@@ -137,6 +143,7 @@ class CausticDesign:
         self.optimizer = Adam(beta_2=MEMORY)
         self._rate = exponential(self.options.final_rate, self.options.steps)
         self.step_number = 0
+        self.changing = False
         self.history: list[tuple[float, float, float]] = []
 
     def _numbered(self) -> list[tuple[int, Lens]]:
@@ -206,9 +213,10 @@ class CausticDesign:
             remedy = "lower the learning rate"
             raise Error(message("CausticDesign.step", "loss", "finite numbers", got, remedy))
         rate = self.options.rates[0] * self._rate(self.step_number)
-        self.optimizer.step(self.x, gradients, rate)
-        self.history.append((self.step_number, loss, rate))
-        self.step_number += 1
+        with changing(self):
+            self.optimizer.step(self.x, gradients, rate)
+            self.history.append((self.step_number, loss, rate))
+            self.step_number += 1
         return loss
 
     def run(
@@ -235,7 +243,14 @@ class CausticDesign:
             if on_step:
                 on_step(Progress(self.step_number, self.steps, self.history[-1][1]))
 
-        run = descend(self, folder, after_step=after_step, should_stop=should_stop)
+        return descend(self, folder, self.result, after_step=after_step, should_stop=should_stop)
+
+    def result(self, run: Run) -> CausticResult:
+        """The lenses as they are now, and the light that they send, measured with other rays.
+
+        Args:
+            run: that has led to them.
+        """
         lenses = self.lenses_now()
         seed = self.options.seed + 1
         found = measure(lenses, self._light, self._receiver, seed=seed, rays=MEASURED)
@@ -245,13 +260,13 @@ class CausticDesign:
             lenses, found, self.target, likeness, history, run.finished, run.seconds
         )
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> Path:
         """Write the checkpoint atomically.
 
         Args:
             folder: which exists.
         """
-        save_design(folder, self._identity(), self.x, self.optimizer, self.history)
+        return save_design(folder, self._identity(), self.x, self.optimizer, self.history)
 
     def load(self, folder: Path) -> None:
         """Go on where the checkpoint in `folder` ends.
@@ -284,6 +299,7 @@ def _require_light(found: Caustic) -> None:
         raise Error(message(name, "receiver", "light on it at the start", "none", remedy))
 
 
+@typed_call
 def design_caustic(
     lenses: Lens | Sequence[Lens],
     light: Light,

@@ -15,12 +15,14 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.caustics.surfaces import SpecularMesh, SurfaceGradient
 from photograd.errors import RangeError, message
 from photograd.transport.shapes import MeshShape
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Lens:
     """A closed slab of glass between a flat front and a height field.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._typed import typed_call
 from photograd.caustics.chains import Chains, SpecularScene, trace_chains
 from photograd.caustics.lens import Lens
 from photograd.caustics.light import Light, Rays, check_light, rays_through
@@ -15,6 +16,7 @@ from photograd.transport.particles import IrradianceSensor
 from photograd.types import FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Caustic:
     """Light that lenses send to a receiver.
@@ -46,6 +48,7 @@ class Traced:
     cells: FloatArray  # (H, W) on the receiver
 
 
+@typed_call
 def measure(
     lenses: Sequence[Lens], light: Light, receiver: IrradianceSensor, *, seed: int, rays: int = 8
 ) -> Caustic:

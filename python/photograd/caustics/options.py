@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from photograd._checks import require_bounds, require_choices
+from photograd._typed import typed_call
 
 Start = Literal["transport", "plane"]
 RATES: dict[Start, tuple[float, float]] = {"transport": (0.01, 10.0), "plane": (0.3, 300.0)}
 """Learning rate and smoothness for each start."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class CausticOptions:
     """How heights are found.

@@ -24,6 +24,7 @@ import numpy as np
 from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.caustics.chains import (
     ENDED,
@@ -151,6 +152,7 @@ def sky_backward(environment: Environment, directions: FloatArray, d_L: FloatArr
     return d_directions
 
 
+@typed_call
 def specular_picture(scene: Scene, *, spp: int, seed: int) -> FloatArray:
     """The picture (H, W, 3), linear radiance, of a scene of smooth glass and mirrors under a sky.
 
@@ -175,6 +177,7 @@ def specular_picture(scene: Scene, *, spp: int, seed: int) -> FloatArray:
     return picture
 
 
+@typed_call
 def specular_picture_backward(
     scene: Scene, d_image: Array, *, spp: int, seed: int, allow_incomplete: bool = False
 ) -> dict[str, Array]:
@@ -224,6 +227,7 @@ def specular_picture_backward(
     return WholeGradients(name, found, found, dict.fromkeys(found, missing) if reasons else {})
 
 
+@typed_call
 def discontinuities(scene: Scene, *, spp: int, seed: int) -> list[str]:
     """What in a picture is discontinuous, a sentence each; none where derivatives are whole.
 

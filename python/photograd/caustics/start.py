@@ -17,13 +17,14 @@ from dataclasses import replace
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.caustics.intersections import unit
 from photograd.caustics.lens import Lens
 from photograd.caustics.light import Light, cell_power, light_at
 from photograd.caustics.scattering import scatter
 from photograd.caustics.smoothing import CosineBasis
 from photograd.caustics.transport_map import Axes, transport_map
-from photograd.errors import RangeError, message
+from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.particles import IrradianceSensor
 from photograd.types import Array, FloatArray
 
@@ -33,6 +34,7 @@ GRID = 64
 """Cells along an edge for which transport is computed, at most."""
 
 
+@typed_call
 def transport_lens(lens: Lens, light: Light, receiver: IrradianceSensor, target: Array) -> Lens:
     """The lens with heights that form the picture, to first order.
 
@@ -43,7 +45,8 @@ def transport_lens(lens: Lens, light: Light, receiver: IrradianceSensor, target:
         target: (H, W) light on the receiver's cells, in any unit.
 
     Raises:
-        ShapeError: a target of another shape than the receiver.
+        ShapeError: a target of another shape than the receiver, or a lens of fewer heights than 3
+            each way.
         RangeError: negative or not finite numbers, a target without light, edges that are not
             parallel, or heights that come down to the front.
     """
@@ -51,6 +54,9 @@ def transport_lens(lens: Lens, light: Light, receiver: IrradianceSensor, target:
     target = call.array("target", target, (receiver.height, receiver.width), low=0.0)
     _require_parallel(call, lens, receiver)
     m, n = lens.heights.shape
+    if min(m, n) < 3:
+        expected, remedy = "at least 3 heights each way", "take more, or start from a plane"
+        raise ShapeError(message("transport_lens", "lens", expected, (m, n), remedy))
     axes = (_unit(receiver.edge_x), _unit(receiver.edge_y))
     counts = (min(GRID, n - 1), min(GRID, m - 1))
     source_axes, source = _source(lens, light, counts, axes)

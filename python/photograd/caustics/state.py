@@ -30,7 +30,7 @@ History = list[tuple[float, float, float]]
 
 def save_design(
     folder: Path, identity: dict[str, Any], x: dict[str, FloatArray], adam: Adam, history: History
-) -> None:
+) -> Path:
     """Write DIR/caustic.npz atomically; IoError if that fails.
 
     Args:
@@ -42,7 +42,7 @@ def save_design(
     """
     meta = {"step": len(history), **identity}
     rows = np.array(history, np.float64).reshape(-1, 3)
-    save_checkpoint(folder / FILE_NAME, Checkpoint(meta, dict(x), adam.state(), {}, rows))
+    return save_checkpoint(folder / FILE_NAME, Checkpoint(meta, dict(x), adam.state(), {}, rows))
 
 
 def load_design(

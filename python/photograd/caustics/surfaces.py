@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SpecularMesh:
     """A triangle mesh of smooth glass, or a mirror.
@@ -42,6 +44,7 @@ class SpecularMesh:
             call.number("eta", self.eta, above=0)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SpecularSphere:
     """A sphere of smooth glass, or a mirror.
@@ -70,6 +73,7 @@ class SpecularSphere:
 Surface = SpecularMesh | SpecularSphere
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SurfaceGradient:
     """dL/d of a surface; what the surface does not have stays 0 or empty.

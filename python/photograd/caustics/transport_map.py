@@ -21,7 +21,8 @@ import numpy as np
 from photograd_course.portable_math import exp, log
 
 from photograd._arrays import Arguments
-from photograd.errors import RangeError, message
+from photograd._typed import typed_call
+from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array, FloatArray
 
 FLOOR = 1e-4
@@ -43,6 +44,7 @@ class Axes(NamedTuple):
     y: Array
 
 
+@typed_call
 def transport_map(source: Array, source_axes: Axes, target: Array, target_axes: Axes) -> FloatArray:
     """Where the light of each cell of the source goes: (m, n, 2) meters, x and y.
 
@@ -59,6 +61,9 @@ def transport_map(source: Array, source_axes: Axes, target: Array, target_axes: 
     call = Arguments("transport_map", np.float64)
     a = _density(call, "source", source)
     b = _density(call, "target", target)
+    for name, array in (("source", a), ("target", b)):
+        if min(array.shape) < 2:
+            raise ShapeError(message(call.function, name, "at least 2 x 2 cells", array.shape))
     for name, axes, shape in (("source", source_axes, a.shape), ("target", target_axes, b.shape)):
         call.array(f"{name}_axes.x", axes.x, (shape[1],))
         call.array(f"{name}_axes.y", axes.y, (shape[0],))

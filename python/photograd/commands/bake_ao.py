@@ -12,14 +12,8 @@ import typer
 from photograd_course.cli import DebugOption, JsonOption, Progress, SeedOption, ThreadsOption, emit
 from photograd_course.cli import note as say
 
-from photograd.commands.shared import (
-    RadiusOption,
-    StopRequest,
-    check_output_name,
-    out_option,
-    stop_on_signals,
-    use_threads,
-)
+from photograd._signals import StopRequest, stop_on_signals
+from photograd.commands.shared import RadiusOption, hold_output, out_option, use_threads
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.errors import SceneError, message
 from photograd.images.kind import LINEAR_SUFFIXES
@@ -47,6 +41,7 @@ def register(app: typer.Typer) -> None:
 
 
 def bake_ao(
+    context: typer.Context,
     scene: SceneArgument,
     shape: ShapeOption = "",
     out: OutOption = Path("occlusion.exr"),
@@ -68,7 +63,7 @@ def bake_ao(
     Example: photograd bake-ao chair.glb --shape seat --texels 1024 --radius 0.5 --out seat_ao.exr
     """
     use_threads(threads)
-    check_output_name("bake-ao", out)
+    hold_output(context, "bake-ao", out, beside=[out.with_suffix(".png")])
     described, _ = load_scene(scene, 16)
     bake = OcclusionBake(
         described, shape or _only_mesh(described), texels, radius=radius, seed=seed

@@ -13,6 +13,7 @@ from photograd_course.suggest import choose_from
 
 from photograd._fit_options import FitOptions
 from photograd._run_lock import one_run_in
+from photograd._signals import StopRequest, stop_on_signals
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
@@ -24,10 +25,8 @@ from photograd.commands.shared import (
     SizeOption,
     SppOption,
     StepsOption,
-    StopRequest,
     ViewsOption,
     out_option,
-    stop_on_signals,
     use_threads,
 )
 from photograd.errors import RangeError, SceneError, message

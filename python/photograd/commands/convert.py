@@ -10,6 +10,7 @@ from photograd_course.cli import DebugOption, JsonOption, emit
 
 from photograd._checkpoint import FILE_NAME
 from photograd._checks import typed
+from photograd._run_lock import one_run_for, one_run_in
 from photograd.capture.export import Form
 from photograd.commands.convert_capture import CAMERAS, convert_capture
 from photograd.commands.convert_fit import convert_fit
@@ -67,6 +68,7 @@ def register(app: typer.Typer) -> None:
 
 
 def convert(
+    context: typer.Context,
     source: Annotated[
         Path,
         typer.Argument(
@@ -112,6 +114,7 @@ def convert(
     Example: photograd convert photos transforms.json
     """
     _check_other(source, target)
+    _hold(context, target)
     suffix, form = target.suffix.lower(), typed("convert", "--colmap", Form, colmap)
     if spz_version is not None and suffix != ".spz":
         expected = "a file .spz to write with --spz-version"
@@ -133,6 +136,15 @@ def convert(
     else:
         found = convert_file(source, target, SPZ_VERSION if spz_version is None else spz_version)
     emit(found, as_json=as_json, title="convert")
+
+
+def _hold(context: typer.Context, target: Path) -> None:
+    """Find out before the work whether OUT can be written; its folder is made."""
+    if target.suffix and not target.is_dir():
+        held = one_run_for("convert", target, argument="OUT", parents=True)
+    else:
+        held = one_run_in("convert", target, argument="OUT")
+    context.with_resource(held)
 
 
 def _is_model(source: Path) -> bool:

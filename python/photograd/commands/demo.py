@@ -11,6 +11,7 @@ import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 
 from photograd._run_lock import one_run_in
+from photograd._signals import stop_on_signals
 from photograd.capture.load import load_capture
 from photograd.capture.orbit import orbit_cameras
 from photograd.commands.capture import DEFAULT_SCENE, make_capture
@@ -23,7 +24,6 @@ from photograd.commands.shared import (
     StepsOption,
     ViewsOption,
     out_option,
-    stop_on_signals,
     use_threads,
 )
 from photograd.fitting import FitOptions

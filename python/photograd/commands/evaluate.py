@@ -23,6 +23,7 @@ from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
     ModelArgument,
+    hold_output,
     out_option,
     use_threads,
 )
@@ -38,6 +39,7 @@ def register(app: typer.Typer) -> None:
 
 
 def evaluate(
+    context: typer.Context,
     model: ModelArgument,
     capture: CaptureArgument,
     out: Annotated[
@@ -57,6 +59,8 @@ def evaluate(
     Example: photograd evaluate model photos --out comparison.png
     """
     use_threads(threads)
+    if out is not None:
+        hold_output(context, "evaluate", out, (".png",))
     loaded = load_model(model)
     photographs = load_capture(capture, downscale=downscale, allow_outside=allow_outside)
     views = photographs.test

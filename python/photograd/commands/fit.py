@@ -22,6 +22,7 @@ from photograd_course.cli import (
 from photograd._checkpoint import FILE_NAME
 from photograd._descend import LOSS_COLUMN, progress_bar, run_folder
 from photograd._fit_options import FitOptions
+from photograd._signals import stop_on_signals
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.fit_image import fit_picture, is_picture
@@ -59,7 +60,6 @@ from photograd.commands.shared import (
     DownscaleOption,
     is_given,
     out_option,
-    stop_on_signals,
     use_threads,
 )
 from photograd.commands.view_follow import shown_in_browser

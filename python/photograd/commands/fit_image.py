@@ -11,7 +11,8 @@ import typer
 from photograd_course.cli import emit, note
 from photograd_course.suggest import choose_from
 
-from photograd.commands.shared import is_given, stop_on_signals
+from photograd._signals import stop_on_signals
+from photograd.commands.shared import is_given
 from photograd.errors import RangeError, message
 from photograd.fields.neural_image import Encoding, ImagePolicy
 from photograd.fitting.image_fit import FittedImage, ImageFitOptions, fit_image

@@ -38,7 +38,7 @@ from photograd.commands.frame_options import (
     VignetteOption,
     options_of,
 )
-from photograd.commands.shared import DepthOption, SppOption, check_output_name, use_threads
+from photograd.commands.shared import DepthOption, SppOption, hold_output, use_threads
 from photograd.commands.trace import CameraOption, SceneArgument, SizeOption, load_scene
 from photograd.errors import RangeError, message
 from photograd.frame.against import Comparison, compare_with_paths
@@ -62,6 +62,7 @@ def register(app: typer.Typer) -> None:
 
 
 def frame(
+    context: typer.Context,
     scene: SceneArgument,
     out: OutOption = Path("frame.png"),
     size: SizeOption = 512,
@@ -107,10 +108,12 @@ def frame(
     """
     options = options_of(locals())
     use_threads(threads)
-    check_output_name("frame", out)
     if against not in ("", "path"):
         raise RangeError(message("frame", "--against", "'path'", against))
     shown = _shown(show or [])
+    others = [*shown, *(["against"] if against else [])]
+    beside = [out.with_suffix(f".{name}.png") for name in others]
+    hold_output(context, "frame", out, beside=[out.with_suffix(".png"), *beside])
     described, _ = load_scene(scene, size, camera)
     if detail:
         described = SceneDetail(described).at(described.camera, detail)

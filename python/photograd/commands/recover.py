@@ -13,17 +13,11 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 
 from photograd._checks import typed
 from photograd._descend import progress_bar, run_folder
+from photograd._signals import StopRequest, stop_on_signals
 from photograd.caustics.options import RATES
 from photograd.caustics.state import FILE_NAME as LENS_FILE_NAME
 from photograd.commands.recover_caustic import lens_name, options_of, recover_lens
-from photograd.commands.shared import (
-    DepthOption,
-    StepsOption,
-    StopRequest,
-    out_option,
-    stop_on_signals,
-    use_threads,
-)
+from photograd.commands.shared import DepthOption, StepsOption, out_option, use_threads
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import LINEAR_SUFFIXES

@@ -12,10 +12,10 @@ from photograd_course.cli import note
 
 from photograd._checks import typed
 from photograd._descend import progress_bar
+from photograd._signals import StopRequest
 from photograd.caustics import CausticDesign, CausticOptions, CausticResult
 from photograd.caustics.from_scene import height_shape, lens_of, light_of_scene, receiver_of
 from photograd.caustics.options import Start
-from photograd.commands.shared import StopRequest
 from photograd.errors import RangeError, message
 from photograd.images.write import write_exr
 from photograd.transport.mesh_files import write_stl

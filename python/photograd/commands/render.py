@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +10,7 @@ import typer
 from photograd_course.cli import Column, DebugOption, JsonOption, Progress, ThreadsOption, emit
 
 from photograd._checks import typed
+from photograd.capture.camera import Camera
 from photograd.commands.drawable import check_rendered
 from photograd.commands.render_output import (
     SHOWN,
@@ -32,7 +33,7 @@ from photograd.commands.render_paths import (
     WidthOption,
     chosen_size,
 )
-from photograd.commands.render_subjects import AUTO, UpOption, check_up, subject_of
+from photograd.commands.render_subjects import AUTO, Subject, UpOption, check_up, subject_of
 from photograd.commands.shared import use_threads
 from photograd.fitting.drawing import Picture
 from photograd.fitting.fog import RAMPS
@@ -44,6 +45,7 @@ def register(app: typer.Typer) -> None:
 
 
 def render(
+    context: typer.Context,
     model: Annotated[
         Path,
         typer.Argument(
@@ -95,21 +97,22 @@ def render(
     Example: photograd render model --path views --split test --show depth --out depths
     """
     use_threads(threads)
-    output = Output.checked(out, typed("render", "--show", SHOWN, show), fps, depth_range)
+    output = Output.checked(context, out, typed("render", "--show", SHOWN, show), fps, depth_range)
     check_up(up)
-    pixels = chosen_size(size, width, height)
     check_rendered(model)
+    pixels = chosen_size(size, width, height)
     choice = PathChoice.checked(path, frames, pixels, elevation, split, capture)
     volume = {"ramp": ramp, "sigma_t": sigma_t, "resolution": resolution, "window": window}
     subject = subject_of(model, up, volume)
     cameras = choice.cameras(subject)
     output.check_cameras(cameras)
-
-    def pictures() -> Iterator[Picture]:
-        with Progress("render", len(cameras), [Column("frame", "{:.0f}".format)]) as bar:
-            for number, camera in enumerate(cameras, 1):
-                yield subject.draw(camera)
-                bar.update(number, frame=number)
-
-    told = output.write(pictures(), cameras)
+    told = output.write(_pictures(subject, cameras), cameras)
     emit({"out": out, "frames": len(cameras), **told}, as_json=as_json, title="render")
+
+
+def _pictures(subject: Subject, cameras: Sequence[Camera]) -> Iterator[Picture]:
+    """Drawn one after the other under a progress bar."""
+    with Progress("render", len(cameras), [Column("frame", "{:.0f}".format)]) as bar:
+        for number, camera in enumerate(cameras, 1):
+            yield subject.draw(camera)
+            bar.update(number, frame=number)

@@ -13,7 +13,7 @@ import typer
 from photograd._checkpoint import write_npz
 from photograd._memory import require_room
 from photograd.capture.camera import Camera
-from photograd.commands.shared import check_output_name, out_option
+from photograd.commands.shared import hold_output, out_option
 from photograd.errors import IoError, RangeError, message
 from photograd.fitting.drawing import Picture
 from photograd.images.video import VIDEOS, require_even, require_video_writer, write_video
@@ -73,15 +73,19 @@ class Output:
 
     @classmethod
     def checked(
-        cls, out: Path, show: SHOWN, fps: float, depth_range: tuple[float, float] | None
+        cls,
+        context: typer.Context,
+        out: Path,
+        show: SHOWN,
+        fps: float,
+        depth_range: tuple[float, float] | None,
     ) -> Output:
-        """The options, if they mean something together; nothing is written.
+        """The options, if they mean something together, and the place, held for this run.
 
         Raises:
             IoError: a name that cannot be written, or a video without imageio-ffmpeg.
             RangeError: a rate that a GIF cannot have, or depths that are no range.
         """
-        check_output_name("render", out, (GIF, *VIDEOS, NUMBERS, STILL), folder="PNG frames")
         output = cls(out, show, fps, depth_range)
         if output.suffix == GIF and fps > GIF_FPS:
             expected = f"at most {GIF_FPS} frames a second in a GIF"
@@ -95,6 +99,8 @@ class Output:
             if not 0 <= depth_range[0] < depth_range[1] < np.inf:
                 expected = "two depths from 0, the nearer first"
                 raise RangeError(message("render", "--depth-range", expected, depth_range))
+        kinds = (GIF, *VIDEOS, NUMBERS, STILL)
+        hold_output(context, "render", out, kinds, folder="PNG frames")
         return output
 
     @property

@@ -1,19 +1,17 @@
-"""What the core's commands share: threads, stopping politely, types and checks of arguments."""
+"""What the core's commands share: threads, types and checks of arguments."""
 
 from __future__ import annotations
 
 import errno
 import os
-import signal
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from types import FrameType
 from typing import Annotated, Any
 
 import typer
 
 from photograd._compiled import _core
+from photograd._run_lock import one_run_for, one_run_in
 from photograd.errors import IoError, message
 from photograd.images.kind import LINEAR_SUFFIXES
 
@@ -83,7 +81,12 @@ def use_threads(threads: int) -> None:
 
 
 def check_output_name(
-    command: str, out: Path, suffixes: Sequence[str] = PICTURES, *, folder: str = ""
+    command: str,
+    out: Path,
+    suffixes: Sequence[str] = PICTURES,
+    *,
+    folder: str = "",
+    parents: bool = False,
 ) -> None:
     """Refuse an --out of `command` that cannot be written, before the work and not after it.
 
@@ -92,6 +95,7 @@ def check_output_name(
         out: the name.
         suffixes: ends of names of files that can be written.
         folder: what a folder would hold, where a name without a suffix means one; "" where not.
+        parents: whether the folder that it lies in is made.
 
     Raises:
         IoError: another end of the name, a file where a folder should be or the other way round, or
@@ -103,50 +107,43 @@ def check_output_name(
             raise IoError(message(command, "--out", f"a folder for {folder}", f"{out}, a file"))
         return
     if suffix not in suffixes:
-        expected = f"a name that ends in {', '.join(suffixes[:-1])} or {suffixes[-1]}"
+        *others, last = suffixes
+        expected = f"a name that ends in {', '.join(others)}{' or ' if others else ''}{last}"
         expected += f", or one without a suffix: a folder for {folder}" if folder else ""
         raise IoError(message(command, "--out", expected, out))
-    if not out.parent.is_dir() or out.is_dir():
+    if not (parents or out.parent.is_dir()) or out.is_dir():
         raise IoError(message(command, "--out", "a file in a folder that exists", out))
 
 
-class StopRequest:
-    """Becomes true when Ctrl-C or SIGTERM arrives, so that a fit can save before it ends."""
+def hold_output(
+    context: typer.Context,
+    command: str,
+    out: Path,
+    suffixes: Sequence[str] = PICTURES,
+    *,
+    beside: Sequence[Path] = (),
+    folder: str = "",
+    parents: bool = False,
+) -> None:
+    """Find out before the work whether `out` can be written, and hold it for this run alone.
 
-    def __init__(self) -> None:
-        self.signal: int | None = None
+    Args:
+        context: of the command, with which the hold ends.
+        command: on whose behalf the error speaks.
+        out: a file, or a folder where `folder` says so.
+        suffixes: as for `check_output_name`.
+        beside: other files that the command writes.
+        folder, parents: as for `check_output_name`.
 
-    def __call__(self) -> bool:
-        """Whether a signal has arrived."""
-        return self.signal is not None
-
-    @property
-    def exit_code(self) -> int:
-        """128 + signal number, as shells expect."""
-        return 0 if self.signal is None else 128 + self.signal
-
-
-@contextmanager
-def stop_on_signals() -> Iterator[StopRequest]:
-    """Catch the first Ctrl-C or SIGTERM as a request; a second one acts as usual."""
-    request = StopRequest()
-
-    def note(number: int, _frame: FrameType | None) -> None:
-        request.signal = number
-        restore()
-
-    previous: dict[int, Any] = {}
-    for number in (signal.SIGINT, signal.SIGTERM):
-        previous[number] = signal.signal(number, note)
-
-    def restore() -> None:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
-
-    try:
-        yield request
-    finally:
-        restore()
+    Raises:
+        IoError: what `check_output_name` refuses, a place that cannot be written to, or that
+            another run holds.
+    """
+    check_output_name(command, out, suffixes, folder=folder, parents=parents)
+    if folder and not out.suffix:
+        context.with_resource(one_run_in(command, out))
+    else:
+        context.with_resource(one_run_for(command, out, *beside, parents=parents))
 
 
 def is_given(context: typer.Context, name: str) -> bool:

@@ -11,8 +11,9 @@ import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit
 from photograd_course.cli import note as say
 
-from photograd.commands.shared import out_option, stop_on_signals, use_threads
-from photograd.errors import RangeError, SceneError, message
+from photograd._signals import stop_on_signals
+from photograd.commands.shared import hold_output, out_option, use_threads
+from photograd.errors import RangeError, SceneError
 from photograd.fields.lit_surface import lit
 from photograd.fields.mesh_surface import MeshSurface
 from photograd.fields.surface import SurfaceField
@@ -53,6 +54,7 @@ def register(app: typer.Typer) -> None:
 
 
 def simplify_mesh(
+    context: typer.Context,
     mesh: MeshArgument,
     triangles: TrianglesOption,
     out: OutOption = Path("simple.glb"),
@@ -80,9 +82,7 @@ def simplify_mesh(
     Example: photograd simplify bunny.obj --triangles 1000 --out bunny_1000.glb
     """
     use_threads(threads)
-    if out.suffix.lower() not in MeshSurface.export_suffixes:
-        expected = f"a file name that ends in {' or '.join(MeshSurface.export_suffixes)}"
-        raise RangeError(message("simplify", "--out", expected, f"{out.name}"))
+    hold_output(context, "simplify", out, MeshSurface.export_suffixes)
     options = SimplifyOptions(
         triangles, views=views, size=size, steps=steps, texture=texture, opacity=opacity, seed=seed
     )

@@ -24,7 +24,7 @@ from photograd_course.cli import (
 from photograd_course.color import srgb_encode
 
 from photograd._checks import typed
-from photograd._run_lock import one_run_for
+from photograd._signals import StopRequest, stop_on_signals
 from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     PICTURES,
@@ -32,10 +32,8 @@ from photograd.commands.shared import (
     DepthOption,
     RadiusOption,
     SppOption,
-    StopRequest,
-    check_output_name,
+    hold_output,
     out_option,
-    stop_on_signals,
     use_threads,
 )
 from photograd.commands.trace_estimates import (
@@ -164,8 +162,9 @@ def trace(
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    check_output_name("trace", out, SIGNED_PICTURES if derivative else PICTURES)
-    context.with_resource(one_run_for("trace", out))
+    sums_path = out.with_suffix(".sums.npz")
+    kinds = SIGNED_PICTURES if derivative else PICTURES
+    hold_output(context, "trace", out, kinds, beside=[out.with_suffix(".png"), sums_path])
     options = PathOptions(
         typed("trace", "--strategy", Strategy, strategy),
         typed("trace", "--heuristic", Heuristic, heuristic),
@@ -181,7 +180,6 @@ def trace(
         **asdict(options),
         **estimate.key,
     }
-    sums_path = out.with_suffix(".sums.npz")
     if resume:
         sums = load_accumulation(sums_path, key)
         note(f"resumed at {sums.count} of {spp} samples")
@@ -220,10 +218,15 @@ def write_pictures(sums: Accumulation, out: Path) -> None:
     write_png(out.with_suffix(".png"), srgb_encode(np.clip(mean, 0.0, 1.0)).astype(np.float32))
 
 
+def _percent(noise: float) -> str:
+    """One sample says nothing of the noise."""
+    return "unknown" if math.isnan(noise) else f"{100 * noise:.1f} %"
+
+
 def _run(add: Any, save: Any, sums: Accumulation, spp: int, stopping: StopRequest) -> float:
     """Adds passes until there are `spp` samples or a signal arrives; seconds that took."""
     began = saved = time.monotonic()
-    columns = [Column("noise", lambda value: f"{100 * value:.1f} %")]
+    columns = [Column("noise", _percent)]
     start = min(sums.count, spp)
     with Progress("trace", spp, columns, start=start) as bar:
         while sums.count < spp and not stopping():

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from photograd_course.cli import DebugOption, JsonOption, ThreadsOption, emit, note
+from photograd_course.cli.failures import INTERRUPTED
 
+from photograd._signals import stop_on_signals
 from photograd.capture import Capture, load_capture
 from photograd.commands.drawable import TRACED
 from photograd.commands.render_subjects import AUTO, UpOption, check_up
-from photograd.commands.shared import DepthOption, SppOption, is_given, stop_on_signals, use_threads
+from photograd.commands.shared import DepthOption, SppOption, is_given, use_threads
 from photograd.commands.view_drawing import Viewed, viewed_file, viewed_scene
 from photograd.commands.view_follow import FolderView, is_fit, viewed_folder
 from photograd.commands.view_server import LOOPBACK, Page, free_port
@@ -89,9 +93,16 @@ def view(
     """
     use_threads(threads)
     check_up(up)
-    viewed, photographs = _found(what, capture, up, spp, max_depth)
-    port = free_port(host, port, exact=is_given(context, "port"))
-    page = Page(viewed, photographs, host=host, port=port, largest=size)
+    with _interruptible():
+        viewed, photographs = _found(what, capture, up, spp, max_depth)
+        port = free_port(host, port, exact=is_given(context, "port"))
+        page = Page(viewed, photographs, host=host, port=port, largest=size)
+    _serve(page, what)
+    emit({"address": page.address}, as_json=as_json, title="view")
+
+
+def _serve(page: Page, what: str) -> None:
+    """Until a signal; the folder of a fit is looked at again and again."""
     folder = FolderView(Path(what)) if is_fit(Path(what)) else None
     note(f"{page.address} shows {what}; Ctrl-C ends")
     try:
@@ -102,7 +113,26 @@ def view(
                     folder.look(page)
     finally:
         page.close()
-    emit({"address": page.address}, as_json=as_json, title="view")
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """A signal ends the command with its status, wherever it arrives while things are read.
+
+    Python throws away an exception that a signal raises within a finalizer; it is asked for again
+    at the end.
+    """
+
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    with stop_on_signals(interrupt) as stopping:
+        try:
+            yield
+        except KeyboardInterrupt as interrupted:
+            raise typer.Exit(stopping.exit_code or INTERRUPTED) from interrupted
+    if stopping():
+        raise typer.Exit(stopping.exit_code)
 
 
 def _found(

@@ -20,6 +20,7 @@ from photograd._extras import import_extra
 from photograd.capture import Capture
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
+from photograd.commands.view_door import guarded
 from photograd.commands.view_drawing import Shown, Viewed
 from photograd.commands.view_gradients import GradientLayer, scale_bar
 from photograd.commands.view_hits import Pick
@@ -86,7 +87,7 @@ class Page:
         self._reach = float(np.linalg.norm(box[1] - box[0]))
         ahead = float((box.mean(axis=0) - self._start.position) @ self._start.forward)
         self._queued = max(ahead, 0.05 * self._reach)
-        with _quiet():
+        with _quiet(), guarded(host):
             self._server = viser.ViserServer(host=host, port=port, verbose=False)
         self.address = f"http://{host}:{self._server.get_port()}"
         self._server.scene.set_up_direction("+y")

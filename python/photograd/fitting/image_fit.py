@@ -31,7 +31,7 @@ from photograd._checkpoint import (
 )
 from photograd._checks import from_plain, require_bounds
 from photograd._compiled import _core
-from photograd._descend import Progress, descend, progress_bar, run_folder
+from photograd._descend import Progress, Run, changing, descend, progress_bar, run_folder
 from photograd._notebook import EDGE, png_of_sheet, sheet
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.neural_image import ImagePolicy, NeuralImage, pixel_centers
@@ -145,13 +145,9 @@ def fit_image(
                 if on_step:
                     on_step(Progress(job.step_number, job.steps, job.losses[-1]))
 
-            run = descend(job, checkpoints, after_step=after_step, should_stop=should_stop)
-    image = np.clip(job.field.image(*picture.shape[:2]), 0, 1)
-    error = float(np.mean(np.square(image - picture), dtype=np.float64))
-    losses = np.array(job.losses)
-    return FittedImage(
-        job.field, picture, image, decibels(error), losses, run.finished, run.seconds
-    )
+            return descend(
+                job, checkpoints, job.result, after_step=after_step, should_stop=should_stop
+            )
 
 
 class ImageFit:
@@ -170,6 +166,7 @@ class ImageFit:
         method = RowAdam if "table" in self.field.params else Adam
         self.optimizer = method(epsilon=1e-15, threads=max(1, _core.thread_count()))
         self.step_number = 0
+        self.changing = False
         self.losses: list[float] = []
         self._height, self._width = picture.shape[:2]
         self._colors = picture.reshape(-1, 3)
@@ -193,14 +190,27 @@ class ImageFit:
         d_color = difference * np.float32(2.0 / difference.size)
         gradients = self.field.render_backward(context, Outputs(d_color))
         rate = o.learning_rate * exponential(o.final_rate, o.steps)(self.step_number)
-        with np.errstate(over="ignore", invalid="ignore"):  # looked for below
-            self.optimizer.step(self.field.params, gradients, dict.fromkeys(gradients, rate))
-        self.field.require_bounded("fit_image")
-        self.losses.append(loss)
-        self.step_number += 1
+        with changing(self):
+            with np.errstate(over="ignore", invalid="ignore"):  # looked for below
+                self.optimizer.step(self.field.params, gradients, dict.fromkeys(gradients, rate))
+            self.field.require_bounded("fit_image")
+            self.losses.append(loss)
+            self.step_number += 1
         return loss
 
-    def save(self, folder: Path) -> None:
+    def result(self, run: Run) -> FittedImage:
+        """The network as it is now, beside the picture.
+
+        Args:
+            run: that has led to it.
+        """
+        picture = self._colors.reshape(self._height, self._width, 3)
+        image = np.clip(self.field.image(self._height, self._width), 0, 1)
+        psnr = decibels(float(np.mean(np.square(image - picture), dtype=np.float64)))
+        losses = np.array(self.losses)
+        return FittedImage(self.field, picture, image, psnr, losses, run.finished, run.seconds)
+
+    def save(self, folder: Path) -> Path:
         """Write DIR/image.npz atomically.
 
         Args:
@@ -214,7 +224,7 @@ class ImageFit:
         }
         rows = [(step, loss, decibels(loss)) for step, loss in enumerate(self.losses)]
         history = np.array(rows, np.float64).reshape(-1, 3)
-        save_checkpoint(
+        return save_checkpoint(
             folder / IMAGE_FILE,
             Checkpoint(meta, self.field.params, self.optimizer.state(), {}, history),
         )

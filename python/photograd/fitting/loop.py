@@ -30,7 +30,7 @@ from photograd_course.suggest import choose_from
 from photograd._checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
 from photograd._checks import require_instance
 from photograd._compiled import _core
-from photograd._descend import descend
+from photograd._descend import Run, changing, descend
 from photograd._fit_options import FitOptions
 from photograd.capture.baseline import baseline_warning
 from photograd.capture.bounds import estimate_bounds, require_views_of
@@ -99,6 +99,7 @@ class Fit:
         self.start_rule = "that of the checkpoint"
         self.background_kind = background_kind(options.background, has_alpha=capture.has_alpha)
         self.step_number = 0
+        self.changing = False
         self.batch_psnr = float("nan")  # dB, of the last step's pixels
         self.history: list[tuple[float, float, float]] = []
 
@@ -193,7 +194,11 @@ class Fit:
 
     def step(self) -> float:
         """One step of gradient descent; returns the loss before it."""
-        self.model = self.model.adapted(self)
+        with changing(self):
+            self.model = self.model.adapted(self)
+            return self._descended()
+
+    def _descended(self) -> float:
         loss, gradients = self.loss_and_gradients(self.draw())
         require_finite_loss(loss, self.step_number)
         self._add_prior(gradients)
@@ -274,6 +279,8 @@ class Fit:
         Raises:
             IoError: the checkpoint cannot be written.
             Error: the loss or a gradient is not finite; the last checkpoint stays as it was.
+            BaseException: what `on_step` raises, and KeyboardInterrupt, once the checkpoint is
+                written; `partial_result` of the exception is what would have been returned.
         """
         folder = Path(folder)
         keep, pace = snapshot_steps(self.options), Pace(time.perf_counter())
@@ -290,17 +297,20 @@ class Fit:
                 size = self.model.resolution
                 on_step(Progress(self.step_number, self.options.steps, *last, size, rate))
 
-        run = descend(
+        def result(run: Run) -> FitResult:
+            loss = self.history[-1][1] if self.history else float("nan")
+            return FitResult(folder / FILE_NAME, self.step_number, run.finished, run.seconds, loss)
+
+        return descend(
             self,
             folder,
+            result,
             after_step=after_step,
             should_stop=should_stop,
             checkpoint_seconds=checkpoint_seconds,
         )
-        loss = self.history[-1][1] if self.history else float("nan")
-        return FitResult(folder / FILE_NAME, self.step_number, run.finished, run.seconds, loss)
 
-    def save(self, folder: str | Path) -> None:
+    def save(self, folder: str | Path) -> Path:
         """Write the checkpoint DIR/model.npz atomically.
 
         Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
@@ -323,7 +333,7 @@ class Fit:
             "color_space": self.capture.color_space,
         }
         history = np.array(self.history, np.float64).reshape(-1, 3)
-        save_checkpoint(
+        return save_checkpoint(
             Path(folder) / FILE_NAME,
             Checkpoint(meta, params, self.optimizer.state(), self.model.state(), history),
         )

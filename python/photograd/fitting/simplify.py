@@ -25,7 +25,7 @@ from photograd_course.schedules import exponential
 
 from photograd import _descend as descent
 from photograd._checks import require_bounds, require_instance, require_types
-from photograd._descend import descend, progress_bar
+from photograd._descend import Run, changing, descend, progress_bar
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import spiral_cameras
 from photograd.errors import Error, RangeError, message
@@ -180,11 +180,14 @@ def simplify(
                 step, loss, psnr = job.history[-1]
                 on_step(Progress(int(step), job.steps, loss, psnr))
 
-        run = descend(job, None, after_step=after_step, should_stop=should_stop)
-    checks = _views(dense, spiral_cameras(dense.box, HELD_OUT, size=options.size, turn=90.0))
-    before, after = (likeness(each, checks) for each in (start, job.surface))
-    history = np.array(job.history, np.float64).reshape(-1, 3)
-    return SimplifiedMesh(job.surface, start, before, after, history, run.finished)
+        def result(run: Run) -> SimplifiedMesh:
+            cameras = spiral_cameras(dense.box, HELD_OUT, size=options.size, turn=90.0)
+            checks = _views(dense, cameras)
+            before, after = (likeness(each, checks) for each in (start, job.surface))
+            history = np.array(job.history, np.float64).reshape(-1, 3)
+            return SimplifiedMesh(job.surface, start, before, after, history, run.finished)
+
+        return descend(job, None, result, after_step=after_step, should_stop=should_stop)
 
 
 def decimated(
@@ -240,6 +243,7 @@ class Simplification:
         self.surface.params = {name: values.copy() for name, values in start.params.items()}
         self.options = options
         self.step_number = 0
+        self.changing = False
         self.history: list[tuple[float, float, float]] = []
         self._views = _views(dense, spiral_cameras(dense.box, options.views, size=options.size))
         self._optimizer = Adam()
@@ -259,18 +263,19 @@ class Simplification:
         if not np.isfinite(loss):
             got = f"{loss} before step {self.step_number}"
             raise Error(message("simplify", "loss", "a finite number", got))
-        self._optimizer.step(self.surface.params, gradients, self._rates())
-        self.history.append((self.step_number, loss, decibels(square)))
-        self.step_number += 1
+        with changing(self):
+            self._optimizer.step(self.surface.params, gradients, self._rates())
+            self.history.append((self.step_number, loss, decibels(square)))
+            self.step_number += 1
         return loss
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> Path:
         """It keeps nothing on disk: a simplification takes a minute.
 
         Args:
             folder: is not used.
         """
-        del folder
+        return folder
 
     def _draw(self) -> TrainingView:
         turn, index = divmod(self.step_number, len(self._views))

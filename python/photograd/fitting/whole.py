@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 
 from photograd._checkpoint import FILE_NAME
 from photograd._checks import require_instance
-from photograd._descend import progress_bar, run_folder
+from photograd._descend import attach, progress_bar, run_folder
 from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
-from photograd.errors import DtypeError, RangeError, message
+from photograd.errors import DtypeError, Error, RangeError, message
 from photograd.fitting.checks import require_startable
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
@@ -84,6 +84,8 @@ def fit(
         IoError: a checkpoint that cannot be written, or is not there to resume from, or a folder
             that another run holds.
         Error: a loss or a gradient that is not finite.
+        KeyboardInterrupt: Ctrl-C or a notebook's interrupt, after a checkpoint in `folder`; its
+            `partial_result` is the model so far, with or without a folder.
 
     Example:
         >>> model = photograd.fit("photos", "dense_grid", resolution=16, steps=20, rays=256)
@@ -112,7 +114,13 @@ def fit(
             if path is None:
                 path = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
             on_step = stack.enter_context(progress_bar("fit", job, shown=bar))
-            job.run(path, on_step=on_step)
+            try:
+                job.run(path, on_step=on_step)
+            except BaseException as failure:
+                if hasattr(failure, "partial_result"):
+                    with suppress(Error):  # no checkpoint could be written
+                        attach(failure, load_model(path))
+                raise
             return load_model(path)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.pixels import color_argument, look_up, pixel_centers
 from photograd.types import Array
@@ -22,6 +23,7 @@ STEPS = (1, 2, 3, 4, 6, 8, 12)
 """Pixels along an edge at which its end is looked for."""
 
 
+@typed_call
 def fxaa(display: Array) -> Array:
     """Blend across edges, by as much as their distance to the next step of the edge says.
 
@@ -103,6 +105,7 @@ def _distance_blend(luma: Array, opposite: Array, level: Array, step: Array) -> 
     return np.where(turns, np.maximum(0.5 - nearest / (ends[0] + ends[1]), 0.0), 0.0)
 
 
+@typed_call
 @dataclass
 class TemporalAntialiasing:
     """A mean over frames, each of which samples other points of the pixels.

@@ -12,9 +12,11 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.types import Array
 
 
+@typed_call
 def bloom(color: Array, weights: Array, threshold: float = 0.0) -> Array:
     """A picture with bloom.
 
@@ -38,6 +40,7 @@ def bloom(color: Array, weights: Array, threshold: float = 0.0) -> Array:
     return out
 
 
+@typed_call
 def bloom_backward(
     color: Array, weights: Array, d_out: Array, threshold: float = 0.0
 ) -> tuple[Array, Array, float]:

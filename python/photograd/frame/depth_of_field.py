@@ -15,6 +15,7 @@ import numpy as np
 from photograd_course.portable_math import cos, sin
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.pixels import pixel_centers
 from photograd.transport.lens import Lens
@@ -23,6 +24,7 @@ from photograd.types import Array
 GOLDEN_ANGLE = 2.39996322972865332
 
 
+@typed_call
 def circle_of_confusion(depth: Array, camera: Camera, lens: Lens) -> Array:
     """Radius of the disk that each depth is seen as, in pixels.
 
@@ -40,6 +42,7 @@ def circle_of_confusion(depth: Array, camera: Camera, lens: Lens) -> Array:
     return radius
 
 
+@typed_call
 def depth_of_field(
     color: Array, depth: Array, camera: Camera, lens: Lens, *, samples: int = 64
 ) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError
 from photograd.geometry.detail import LevelsOfDetail
@@ -23,6 +24,7 @@ LEAST = 256
 """Triangles below which a mesh stays as it is."""
 
 
+@typed_call
 class SceneDetail:
     """The meshes of a scene in several levels of detail.
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.frame.scene import KINDS, FrameScene
 from photograd.types import Array, FloatArray
@@ -21,6 +22,7 @@ OPENING = 3.0
 """Disks count as one from this many of their radius on."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Disks:
     """Disks in the place of surfaces.
@@ -61,6 +63,7 @@ class Disks:
         return out
 
 
+@typed_call
 def scene_disks(scene: FrameScene, *, edge: float, radius: float = 1e6, passes: int = 0) -> Disks:
     """Disks for the opaque surfaces of a scene.
 

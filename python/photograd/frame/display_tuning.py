@@ -17,6 +17,8 @@ from photograd_course.optim import Adam
 from photograd_course.portable_math import exp, log
 
 from photograd._arrays import Arguments
+from photograd._checks import typed
+from photograd._typed import typed_call
 from photograd.frame.bloom import bloom, bloom_backward
 from photograd.frame.tone_mapping import DEFAULT_TONES, ToneCurve, tone_map, tone_map_backward
 from photograd.types import Array, FloatArray
@@ -27,6 +29,7 @@ LEAST = 1e-6
 """What a weight of bloom starts with at least."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class TunedToneCurve:
     """What was found.
@@ -46,6 +49,7 @@ class TunedToneCurve:
     history: FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class TunedBloom:
     """What was found.
@@ -63,6 +67,7 @@ class TunedBloom:
     history: FloatArray
 
 
+@typed_call
 def tune_tone_curve(
     radiance: Array,
     target: Array,
@@ -88,6 +93,7 @@ def tune_tone_curve(
     target = call.array("target", target, radiance.shape)
     call.integer("steps", steps, low=1)
     rate = call.number("rate", rate, above=0.0)
+    typed("tune_tone_curve", "curve", ToneCurve, curve)
     bound = {name: BOUNDS.get(name, 0.0) for name in DEFAULT_TONES[curve]}
     x = {name: log(np.array([value - bound[name]])) for name, value in DEFAULT_TONES[curve].items()}
     x["exposure"] = np.zeros(1)
@@ -110,6 +116,7 @@ def tune_tone_curve(
     return TunedToneCurve(best[0], best[1], before, after, np.array(history))
 
 
+@typed_call
 def tune_bloom(
     color: Array, target: Array, weights: Array, *, steps: int = 200, rate: float = 0.05
 ) -> TunedBloom:

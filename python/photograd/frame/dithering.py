@@ -6,9 +6,11 @@ import numpy as np
 from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import Array
 
 
+@typed_call
 def dither(display: Array, *, levels: int = 256, seed: int = 0, strength: float = 1.0) -> Array:
     """Round display-encoded colors to levels, after noise that makes the mean exact.
 

@@ -12,11 +12,13 @@ import numpy as np
 from photograd_course.portable_math import exp
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.pixels import pixel_centers
 from photograd.types import Array
 
 
+@typed_call
 def add_fog(radiance: Array, depth: Array, camera: Camera, sigma_t: float, color: Array) -> Array:
     """A picture seen through fog.
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.frame.gbuffer import GBuffer
 from photograd.frame.light_views import GOLDEN_SECTION, SkyDirection, infinite_lights, sky_count
 from photograd.frame.scene import FrameScene
@@ -41,6 +42,7 @@ class ReflectanceSamples:
     pdf: Array
 
 
+@typed_call
 def sample_reflectance(scene: FrameScene, surfaces: GBuffer, u: Array) -> ReflectanceSamples:
     """Directions as a path would continue in them.
 
@@ -68,6 +70,7 @@ def sample_reflectance(scene: FrameScene, surfaces: GBuffer, u: Array) -> Reflec
     return ReflectanceSamples(wi, weight, pdf)
 
 
+@typed_call
 def reflectance_pdf(scene: FrameScene, surfaces: GBuffer, wi: Array) -> Array:
     """The density (H, W) per steradian with which `sample_reflectance` chooses directions.
 
@@ -89,6 +92,7 @@ def reflectance_pdf(scene: FrameScene, surfaces: GBuffer, wi: Array) -> Array:
     return pdf
 
 
+@typed_call
 def gather(
     scene: FrameScene,
     surfaces: GBuffer,

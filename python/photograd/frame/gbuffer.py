@@ -14,6 +14,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.meshlets import Culling
 from photograd.frame.scene import KINDS, FrameScene
@@ -21,6 +22,7 @@ from photograd.raster import Visibility
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class GBuffer:
     """Surfaces of the pixels of a camera.
@@ -78,6 +80,7 @@ class GBuffer:
 _NAMES = (*("material", "position", "normal", "shading", "tangent"), *("emission", "alpha", "rows"))
 
 
+@typed_call
 def fill_gbuffer(scene: FrameScene, camera: Camera, visibility: Visibility) -> GBuffer:
     """Look up the surfaces that a visibility buffer shows.
 
@@ -124,6 +127,7 @@ MASK_LAYERS = 16
 """Masks behind one another that a pixel is looked through."""
 
 
+@typed_call
 def draw_surfaces(
     scene: FrameScene,
     camera: Camera,
@@ -159,6 +163,7 @@ def draw_surfaces(
     return visibility, surfaces
 
 
+@typed_call
 def reflect(
     scene: FrameScene, surfaces: GBuffer, wi: Array, irradiance: Array, onto: Array
 ) -> None:
@@ -187,6 +192,7 @@ def reflect(
     )
 
 
+@typed_call
 def reflect_parallel(
     scene: FrameScene, surfaces: GBuffer, wi: Array, irradiance: Array, visible: Array, onto: Array
 ) -> None:

@@ -17,12 +17,14 @@ from typing import Any
 
 from photograd_course.suggest import choose_from
 
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 
 PREVIOUS = "previous."
 """Prefix of buffers of the frame before, which a pass may read under the name of its own target."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class Pass:
     """One step of a frame.
@@ -40,6 +42,7 @@ class Pass:
     writes: tuple[str, ...]
 
 
+@typed_call
 @dataclass(frozen=True)
 class FrameResult:
     """What a graph has made.
@@ -61,6 +64,7 @@ class FrameResult:
         return _named("FrameResult", name, self.buffers)
 
 
+@typed_call
 class PassGraph:
     """Passes in the order in which they run."""
 

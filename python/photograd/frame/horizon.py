@@ -13,11 +13,13 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import require_types
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.screen import screen_arguments
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True)
 class HorizonSettings:
     """How far and how finely horizons are looked for.
@@ -49,6 +51,7 @@ class HorizonSettings:
 HORIZON_DEFAULTS = HorizonSettings()
 
 
+@typed_call
 def horizon_occlusion(
     depth: Array, normals: Array, camera: Camera, settings: HorizonSettings = HORIZON_DEFAULTS
 ) -> Array:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.pixels import color_argument, look_up, pixel_centers
 from photograd.types import Array
 
 
+@typed_call
 def chromatic_aberration(color: Array, strength: float) -> Array:
     """Red drawn larger and blue smaller than green, about the picture's center.
 
@@ -40,6 +42,7 @@ def chromatic_aberration(color: Array, strength: float) -> Array:
     return out
 
 
+@typed_call
 def vignette(color: Array, camera: Camera, strength: float = 1.0) -> Array:
     """The natural fall of light towards the corners: the fourth power of the cosine to the axis.
 

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.scene import FrameScene
 from photograd.frame.shadows import cone_view, cube_views, parallel_view
@@ -39,6 +40,7 @@ WIDEST = 0.26
 GOLDEN_SECTION = 0.6180339887498949
 
 
+@typed_call
 class FrameLight(ABC):
     """Light that reaches each point from one direction.
 
@@ -150,6 +152,7 @@ def sky_count(light: Light, count: int) -> int:
     return 1 if isinstance(light, SunLight) else count
 
 
+@typed_call
 def sky_lights(scene: FrameScene, count: int) -> list[SkyDirection]:
     """Directions towards the lights at infinity, `count` of each, a sun one, by their density.
 
@@ -170,6 +173,7 @@ def sky_lights(scene: FrameScene, count: int) -> list[SkyDirection]:
     return lights
 
 
+@typed_call
 def infinite_lights(scene: Scene) -> dict[str, Light]:
     """The lights at infinity, by the names of their radiance among the tracer's params.
 
@@ -186,6 +190,7 @@ def infinite_lights(scene: Scene) -> dict[str, Light]:
     return found
 
 
+@typed_call
 def background(
     scene: Scene, camera: Camera, hidden: Array | None = None, *, dtype: npt.DTypeLike = np.float64
 ) -> Array:
@@ -212,6 +217,7 @@ def background(
     return sky.reshape(camera.height, camera.width, 3)
 
 
+@typed_call
 def delta_lights(scene: FrameScene) -> list[FrameLight]:
     """The point, spot and directional lights of a scene."""
     return [
@@ -221,6 +227,7 @@ def delta_lights(scene: FrameScene) -> list[FrameLight]:
     ]
 
 
+@typed_call
 def surface_lights(scene: FrameScene, count: int) -> list[PatchLight]:
     """Points on the surfaces that emit, by their power; textures count by their mean.
 

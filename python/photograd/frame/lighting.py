@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.gbuffer import GBuffer, draw_surfaces, reflect, reflect_parallel
 from photograd.frame.light_views import FrameLight
@@ -16,6 +17,7 @@ from photograd.types import Array
 Shadows = Mapping[str, ShadowMap]
 
 
+@typed_call
 def draw_shadow_maps(
     scene: FrameScene, lights: Sequence[FrameLight], settings: ShadowSettings
 ) -> dict[str, ShadowMap]:
@@ -31,6 +33,7 @@ def draw_shadow_maps(
     }
 
 
+@typed_call
 def light_surfaces(
     scene: FrameScene,
     surfaces: GBuffer,

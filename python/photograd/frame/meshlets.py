@@ -17,6 +17,8 @@ from typing import Literal
 
 import numpy as np
 
+from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.geometry.culling import Frustum
 from photograd.types import Array, FloatArray
@@ -26,6 +28,7 @@ TRIANGLES = 64
 """Of a cluster, at most."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Meshlets:
     """Clusters of the faces of a scene.
@@ -82,6 +85,7 @@ class Meshlets:
         return np.asarray(np.sqrt((d * d).sum(axis=1)) + self.radius)
 
 
+@typed_call
 def meshlets(vertices: FloatArray, faces: Array, shape: Array) -> Meshlets:
     """Cut a scene into clusters, each of one shape, along a curve that visits neighbors in turn.
 
@@ -90,6 +94,11 @@ def meshlets(vertices: FloatArray, faces: Array, shape: Array) -> Meshlets:
         faces: (F, 3) vertex numbers.
         shape: (F,) numbers; no cluster has faces of two.
     """
+    call = Arguments("meshlets")
+    vertices = call.array("vertices", vertices, ("V", 3))
+    last = len(vertices) - 1
+    faces = call.array("faces", faces, ("F", 3), dtype=np.int64, min_length=1, low=0, high=last)
+    shape = call.array("shape", shape, ("F",), dtype=np.int64)
     corners = vertices[faces]
     middle = corners.mean(axis=1)
     order = np.lexsort((_morton(middle), shape))

@@ -14,6 +14,7 @@ import numpy as np
 from photograd_course.portable_math import matmul
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.frame.antialiasing import TemporalAntialiasing
@@ -22,6 +23,7 @@ from photograd.frame.pixels import color_argument, look_up, pixel_centers
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class LastFrame:
     """What a frame needs of the one before it.
@@ -38,6 +40,7 @@ class LastFrame:
     history: TemporalAntialiasing | None = None
 
 
+@typed_call
 def velocity(
     surfaces: GBuffer,
     previous: Camera,
@@ -82,6 +85,7 @@ def velocity(
     return np.stack([x - was_x, y - was_y], axis=-1)
 
 
+@typed_call
 def motion_blur(color: Array, moved: Array, shutter: float = 1.0, *, samples: int = 16) -> Array:
     """The mean of a picture along its motion, as a shutter sees it that is open around this frame.
 

@@ -13,11 +13,13 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import require_types
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.screen import Intrinsics, screen_arguments
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True)
 class SsaoSettings:
     """Numbers that are searched for by hand in engines, and by descent here.
@@ -52,6 +54,7 @@ class SsaoSettings:
 SSAO_DEFAULTS = SsaoSettings()
 
 
+@typed_call
 def ssao(
     depth: Array,
     normals: Array,
@@ -84,6 +87,7 @@ def ssao(
     return out
 
 
+@typed_call
 def ssao_backward(
     depth: Array,
     normals: Array,

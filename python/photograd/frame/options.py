@@ -7,6 +7,7 @@ from typing import Literal
 
 from photograd._arrays import Arguments
 from photograd._checks import require_choices
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.frame.horizon import HorizonSettings
 from photograd.frame.meshlets import Culling
@@ -20,6 +21,7 @@ Transparency = Literal["peeled", "sorted", "weighted"]
 Shading = Literal["deferred", "forward"]
 
 
+@typed_call
 @dataclass(frozen=True)
 class FrameOptions:
     """The passes of a frame.

@@ -32,6 +32,7 @@ Motion needs a second input, "last": the `LastFrame`.
 
 from __future__ import annotations
 
+from photograd._typed import typed_call
 from photograd.frame._light_passes import LightPasses
 from photograd.frame._post_passes import PostPasses
 from photograd.frame.graph import Pass, PassGraph
@@ -39,6 +40,7 @@ from photograd.frame.options import FrameOptions
 from photograd.frame.scene import FrameScene
 
 
+@typed_call
 def frame_graph(scene: FrameScene, options: FrameOptions) -> PassGraph:
     """The passes that make a picture of a scene.
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from photograd._arrays import Arguments
 from photograd._checks import require_instance
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import SceneError, message
 from photograd.frame.meshlets import Culling, Meshlets, meshlets
@@ -31,6 +32,7 @@ from photograd.types import Array, FloatArray
 KINDS = ("opaque", "mask", "blended", "glass")
 
 
+@typed_call
 class FrameScene:
     """A scene ready to be rasterized.
 

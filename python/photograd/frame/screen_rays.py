@@ -13,6 +13,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import require_types
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.screen import along_camera_axes, screen_arguments
 from photograd.types import Array
@@ -21,6 +22,7 @@ MISSED, LEFT_FRAME = -1, -2
 """Of `follow_screen_rays`: nothing was met, or the ray left the picture before its end."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class ScreenRaySettings:
     """How rays are followed.
@@ -49,6 +51,7 @@ class ScreenRaySettings:
 SCREEN_RAY_DEFAULTS = ScreenRaySettings()
 
 
+@typed_call
 def follow_screen_rays(
     depth: Array,
     normals: Array,

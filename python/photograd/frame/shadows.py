@@ -14,6 +14,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import require_types
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.errors import ShapeError, message
@@ -22,6 +23,7 @@ from photograd.frame.scene import KINDS, FrameScene
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True)
 class ShadowSettings:
     """How shadows are looked up.
@@ -54,6 +56,7 @@ class ShadowSettings:
 SHADOW_DEFAULTS = ShadowSettings()
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class ShadowMap:
     """What a light sees.
@@ -67,6 +70,7 @@ class ShadowMap:
     depths: FloatArray
 
 
+@typed_call
 def draw_shadow_map(scene: FrameScene, cameras: tuple[Camera, ...]) -> ShadowMap:
     """Draw what covers what is behind it, from the views of a light: glass, too, as for paths.
 
@@ -96,6 +100,7 @@ def draw_shadow_map(scene: FrameScene, cameras: tuple[Camera, ...]) -> ShadowMap
     return ShadowMap(cameras, depths)
 
 
+@typed_call
 def look_up_shadow(
     shadow: ShadowMap, points: Array, normals: Array, settings: ShadowSettings = SHADOW_DEFAULTS
 ) -> Array:

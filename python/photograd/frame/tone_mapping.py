@@ -19,6 +19,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array, FloatArray
 
@@ -33,6 +34,7 @@ DEFAULT_TONES: Mapping[ToneCurve, Mapping[str, float]] = MappingProxyType(
 )
 
 
+@typed_call
 def tone_map(
     color: Array,
     curve: ToneCurve = "agx",
@@ -62,6 +64,7 @@ def tone_map(
     return out.reshape(np.shape(color))
 
 
+@typed_call
 def tone_map_backward(
     color: Array,
     d_out: Array,

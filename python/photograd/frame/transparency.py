@@ -12,9 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd._arrays import Arguments
+from photograd._typed import typed_call
+from photograd.errors import DtypeError, ShapeError, message
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Layer:
     """Surfaces of which each pixel shows one at most.
@@ -30,6 +34,7 @@ class Layer:
     alpha: Array
 
 
+@typed_call
 def blend_nearest_first(layers: Iterable[Layer], behind: Array) -> Array:
     """Layers over an opaque picture; exact where each lies behind the one before it.
 
@@ -37,14 +42,18 @@ def blend_nearest_first(layers: Iterable[Layer], behind: Array) -> Array:
         layers: the nearest first.
         behind: (H, W, 3) radiance.
     """
+    call = Arguments("blend_nearest_first")
+    behind = call.array("behind", behind, ("H", "W", 3), finite=False)
     color, clear = np.zeros_like(behind), np.ones((*behind.shape[:2], 1), behind.dtype)
     for layer in layers:
+        _check_layer(call.function, layer, behind)
         part = clear * layer.alpha[..., None]
         color, clear = color + part * layer.color, clear - part
     out: Array = color + clear * behind
     return out
 
 
+@typed_call
 def blend_weighted(layers: Iterable[Layer], behind: Array, scale: float) -> Array:
     """Layers over an opaque picture, the same in any order [McGuire2013].
 
@@ -56,10 +65,14 @@ def blend_weighted(layers: Iterable[Layer], behind: Array, scale: float) -> Arra
         behind: (H, W, 3) radiance.
         scale: meters; where weights begin to fall.
     """
+    call = Arguments("blend_weighted")
+    behind = call.array("behind", behind, ("H", "W", 3), finite=False)
+    call.number("scale", scale, above=0)
     dtype = behind.dtype.type
     color, total = np.zeros_like(behind), np.zeros((*behind.shape[:2], 1), behind.dtype)
     clear = np.ones_like(total)
     for layer in layers:
+        _check_layer(call.function, layer, behind)
         alpha = layer.alpha[..., None]
         far = np.where(layer.alpha > 0, layer.depth, 0).astype(behind.dtype)[..., None]
         far = far / dtype(scale)
@@ -68,3 +81,14 @@ def blend_weighted(layers: Iterable[Layer], behind: Array, scale: float) -> Arra
     mean = color / np.maximum(total, np.finfo(behind.dtype).tiny)
     out: Array = mean * (1 - clear) + clear * behind
     return out
+
+
+def _check_layer(function: str, layer: object, behind: Array) -> None:
+    """Raise DtypeError or ShapeError for a layer that does not lie over a picture."""
+    if not isinstance(layer, Layer):
+        raise DtypeError(message(function, "layers", "a Layer each", type(layer).__name__))
+    size = behind.shape[:2]
+    for name, shape in (("depth", size), ("color", behind.shape), ("alpha", size)):
+        found = np.shape(getattr(layer, name))
+        if found != shape:
+            raise ShapeError(message(function, f"{name} of layers", f"shape {shape}", found))

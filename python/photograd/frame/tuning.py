@@ -19,6 +19,7 @@ from photograd_course.optim import Adam
 from photograd_course.portable_math import exp, log
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.frame.gbuffer import GBuffer, draw_surfaces
 from photograd.frame.occlusion import SsaoSettings, ssao, ssao_backward
@@ -31,6 +32,7 @@ LEAST = 1e-4
 """The smallest value of a setting; a bias of 0 starts here."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class TunedOcclusion:
     """What was found.
@@ -48,6 +50,7 @@ class TunedOcclusion:
     history: FloatArray
 
 
+@typed_call
 def traced_occlusion(
     scene: FrameScene, camera: Camera, *, spp: int, seed: int = 0, radius: float = np.inf
 ) -> Array:
@@ -67,6 +70,7 @@ def traced_occlusion(
     return found
 
 
+@typed_call
 def tune_occlusion(
     scene: FrameScene,
     cameras: Sequence[Camera],

@@ -17,10 +17,12 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.geometry.mesh import Mesh
 from photograd.types import Array
 
 
+@typed_call
 class BspTree:
     """A partition of space by the planes of triangles.
 
@@ -47,7 +49,9 @@ class BspTree:
             SceneError: as `photograd.geometry.mesh.Bvh`: no triangle, no number, no area.
             RangeError: an option below 1, or more polygons than allowed.
         """
-        self._core = _core.BspTree(mesh.vertices, mesh.faces, candidates, max_polygons)
+        self._core = Arguments("BspTree").run(
+            _core.BspTree, mesh.vertices, mesh.faces, candidates, max_polygons
+        )
         self.points, self.begin, self.face = self._core.polygons()
         self.planes, links = self._core.nodes()
         self.front, self.back, self.first, self.count, self.depth = links.T
@@ -70,6 +74,7 @@ class BspTree:
 # Things by their distance from an eye, for blending (far ones first) or early tests (near ones).
 
 
+@typed_call
 def order_by_distance(points: Any, eye: Any, *, far_first: bool = False) -> npt.NDArray[np.uint32]:
     """Row numbers (N,) of points (N, 3), sorted by their distance from `eye` (3,).
 

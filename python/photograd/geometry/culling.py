@@ -16,12 +16,14 @@ import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Frustum:
     """What a camera sees: the points for which all six planes give at least 0.
@@ -86,6 +88,7 @@ class Culled:
     tested: int
 
 
+@typed_call
 class CullingTree:
     """An octree over the boxes of N objects.
 

@@ -14,12 +14,14 @@ from itertools import pairwise
 import numpy as np
 from photograd_course.checks import require_number
 
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.geometry.mesh import Mesh, drop_degenerate
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Level:
     """A mesh and a bound on its distance from the finest one.
@@ -34,6 +36,7 @@ class Level:
     error: float
 
 
+@typed_call
 def clustered(mesh: Mesh, cell: float) -> Level:
     """The mesh with one vertex a lattice cell of `cell` meters.
 
@@ -96,6 +99,7 @@ def _removed_error(faces: Array, kept: Array, means: Array) -> float:
     return float((0.5 * length + gap[removed].max(axis=1)).max())
 
 
+@typed_call
 class LevelsOfDetail:
     """A mesh and coarser ones.
 

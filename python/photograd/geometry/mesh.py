@@ -15,10 +15,12 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import SceneError, message
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A triangle mesh in its own object space, meters.
@@ -262,6 +264,7 @@ def _interval(call: Arguments, t_min: float | Array, t_max: float | Array) -> tu
 # The point of a mesh that is nearest to a point.
 
 
+@typed_call
 def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:
     """Distances (N,) and nearest points (N, 3) of points (N, 3), by a look at every triangle.
 

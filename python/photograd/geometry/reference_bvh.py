@@ -15,11 +15,13 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.geometry.checks import checked_interval, checked_rays
 from photograd.geometry.mesh import Mesh
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class BvhHits:
     """What R rays met, and what it cost to know.
@@ -43,6 +45,7 @@ class BvhHits:
         return self.primitive >= 0
 
 
+@typed_call
 class ReferenceBvh:
     """A hierarchy of boxes over the triangles of one mesh.
 
@@ -72,7 +75,9 @@ class ReferenceBvh:
                 area, no triangle.
             RangeError: an option out of range.
         """
-        self._core = _core.ReferenceBvh(mesh.vertices, mesh.faces, leaf_size, bins, max_depth)
+        self._core = Arguments("ReferenceBvh").run(
+            _core.ReferenceBvh, mesh.vertices, mesh.faces, leaf_size, bins, max_depth
+        )
         self.boxes, links, self.order = self._core.nodes()
         self.first, self.count, self.right, self.depth = links.T
 

@@ -18,6 +18,7 @@ from photograd_course.checks import require_integer, require_number
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.geometry.checks import checked_interval, checked_rays
 from photograd.types import Array
@@ -162,6 +163,7 @@ def _numbers(function: str, argument: str, value: Sequence[float], count: int) -
 MISSED, HIT, GAVE_UP = 0, 1, 2
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SdfHits:
     """Where R rays met a body.
@@ -185,6 +187,7 @@ class SdfHits:
         return np.asarray(self.end == HIT)
 
 
+@typed_call
 class Body:
     """A shape, ready to be asked.
 

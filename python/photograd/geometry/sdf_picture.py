@@ -14,6 +14,7 @@ import numpy.typing as npt
 from photograd_course.checks import require_number
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.geometry.sdf import GAVE_UP, Body
@@ -22,6 +23,7 @@ from photograd.types import Array
 OFFSET = 1e-4  # m: where a shadow ray starts, so far above the surface
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class BodyPicture:
     """What a camera sees of a body.
@@ -41,6 +43,7 @@ class BodyPicture:
     shadow: npt.NDArray[np.bool_]
 
 
+@typed_call
 def draw_body(
     body: Body,
     camera: Camera,

@@ -13,6 +13,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._memory import available_memory, require_room
+from photograd._typed import typed_call
 from photograd.grids.sparse import SparseGrid
 from photograd.types import Array
 
@@ -28,6 +29,7 @@ class BrickGradients(NamedTuple):
     points: Array  # (P, 3) in index space
 
 
+@typed_call
 class BrickField:
     """Values (N, C) on the active voxels of a sparse grid; everything else has the background."""
 

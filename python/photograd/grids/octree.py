@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
@@ -261,6 +262,7 @@ class _SpatialTree:
         return np.ascontiguousarray(cells)
 
 
+@typed_call
 class Octree(_SpatialTree):
     """A tree of cubes: values (X, Y, Z, C)."""
 
@@ -326,6 +328,7 @@ def _fill_the_cube(cubes: npt.NDArray[np.int64], depth: int) -> bool:
     return bool((start[order] == ends - side[order] ** 3).all()) and int(ends[-1]) == 8**depth
 
 
+@typed_call
 class Quadtree(_SpatialTree):
     """The same in the plane: values (X, Y, C)."""
 

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._memory import require_room
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
@@ -40,6 +41,7 @@ class SparseStatistics:
     most: float
 
 
+@typed_call
 class SparseGrid:
     """A sparse grid of one channel (scalars) or three (vectors), in float32."""
 

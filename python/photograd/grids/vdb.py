@@ -12,12 +12,14 @@ from photograd_course.input_files import require_file
 
 from photograd._compiled import _core
 from photograd._memory import available_memory
+from photograd._typed import typed_call
 from photograd.errors import IoError, message
 from photograd.grids.sparse import SparseGrid
 
 Meta = bool | int | float | str
 
 
+@typed_call
 @dataclass(frozen=True)
 class VdbFile:
     """The grids of a file in their order, and the metadata of the file itself."""
@@ -35,6 +37,7 @@ class VdbFile:
         raise IoError(message("VdbFile.grid", "name", wanted, names))
 
 
+@typed_call
 def read_vdb(path: Path, *, memory_limit: int | None = None) -> VdbFile:
     """Read all grids of a file.
 
@@ -62,6 +65,7 @@ def read_vdb(path: Path, *, memory_limit: int | None = None) -> VdbFile:
     return VdbFile(grids, metadata)
 
 
+@typed_call
 def write_vdb(
     path: Path,
     grids: Sequence[SparseGrid],

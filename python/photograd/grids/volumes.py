@@ -35,6 +35,7 @@ import numpy as np
 from photograd_course.input_files import require_file
 
 from photograd._memory import available_memory
+from photograd._typed import typed_call
 from photograd.errors import IoError, message
 from photograd.types import Array
 
@@ -42,6 +43,7 @@ MAX_CELLS = 1 << 40
 """Voxels beyond which a header is taken for damaged, whatever memory there is."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Volume:
     """A regular grid of numbers.
@@ -338,6 +340,7 @@ READERS = {".vtk": read_vtk, ".nii": read_nifti, ".nii.gz": read_nifti, ".vol": 
 SUFFIXES = tuple(READERS)
 
 
+@typed_call
 def read_volume(path: Path, *, memory_limit: int | None = None) -> Volume:
     """Read a regular volume.
 
@@ -350,6 +353,7 @@ def read_volume(path: Path, *, memory_limit: int | None = None) -> Volume:
         IoError: no file, an unknown kind of file, a damaged one, one that needs more memory, values
             that are not finite.
     """
+    path = Path(path)
     name = path.name.lower()
     readers = [reader for suffix, reader in READERS.items() if name.endswith(suffix)]
     if not readers:

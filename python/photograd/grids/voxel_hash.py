@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 
 Rows = npt.NDArray[np.int32]
 MIN_COORDINATE, MAX_COORDINATE = -(1 << 20), (1 << 20) - 1
@@ -46,6 +47,7 @@ class VoxelHashStatistics:
         return self.count / self.slots if self.slots else 0.0
 
 
+@typed_call
 class VoxelHash:
     """Voxels and the row that each of them has.
 

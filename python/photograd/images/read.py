@@ -22,6 +22,7 @@ from PIL import Image
 
 from photograd._arrays import Arguments
 from photograd._extras import import_extra
+from photograd._typed import typed_call
 from photograd.errors import IoError, message
 from photograd.images import exr
 from photograd.images.kind import (
@@ -100,6 +101,7 @@ def read_header(path: Path) -> ImageHeader:
         raise _unreadable("read_header", path, error) from error
 
 
+@typed_call
 def read_image(path: str | Path) -> ImageArray:
     """Pixels of an image file as (H, W, 4) float32, straight alpha (1 where the file has none).
 
@@ -133,6 +135,7 @@ def read_image(path: str | Path) -> ImageArray:
         raise _unreadable("read_image", path, error) from error
 
 
+@typed_call
 def read_radiance(path: Path) -> ImageArray:
     """Pixels of a linear image, EXR, Radiance .hdr or PFM, as (H, W, 3) float32, as stored.
 
@@ -219,6 +222,7 @@ def _straight(premultiplied: ImageArray) -> ImageArray:
     return result
 
 
+@typed_call
 def downscale_image(
     image: ImageArray, factor: int, valid: npt.NDArray[np.bool_] | None = None
 ) -> tuple[ImageArray, npt.NDArray[np.bool_]]:

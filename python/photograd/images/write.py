@@ -13,6 +13,7 @@ from PIL import Image
 
 from photograd._arrays import Arguments
 from photograd._extras import import_extra
+from photograd._typed import typed_call
 from photograd.errors import IoError, RangeError, message
 from photograd.images import exr
 from photograd.images.pfm import encode_pfm
@@ -20,6 +21,7 @@ from photograd.images.read import ImageArray
 from photograd.images.rgbe import encode_rgbe
 
 
+@typed_call
 def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> None:
     """Write display-encoded (H, W, 3 or 4) values in 0..1, straight alpha, as PNG; atomic.
 
@@ -35,6 +37,7 @@ def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> Non
     atomic_write(path, lambda stream: picture.save(stream, format="PNG"))
 
 
+@typed_call
 def write_jpeg(path: Path, image: ImageArray, *, quality: int = 95) -> None:
     """Write display-encoded (H, W, 3) values in 0..1 as JPEG without chroma subsampling; atomic.
 
@@ -49,6 +52,7 @@ def write_jpeg(path: Path, image: ImageArray, *, quality: int = 95) -> None:
     )
 
 
+@typed_call
 def write_exr(path: Path, image: ImageArray, *, half: bool = False) -> None:
     """Write linear (H, W, 3) or premultiplied (H, W, 4) radiance as float or half EXR; atomic.
 
@@ -59,6 +63,7 @@ def write_exr(path: Path, image: ImageArray, *, half: bool = False) -> None:
     atomic_write(path, exr.encode_exr(_pixels("write_exr", image), half=half))
 
 
+@typed_call
 def write_radiance(path: Path, image: ImageArray) -> None:
     """Write linear (H, W, 3) radiance as the name's end says: .exr, .hdr or .pfm; atomic.
 

@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True)
 class LightSamples:
     """One sample for each of N points.
@@ -37,6 +39,7 @@ class LightSamples:
     is_delta: bool
 
 
+@typed_call
 class Light(ABC):
     """Calls of the core, with points (N, 3) in the world, in the dtype of the points.
 

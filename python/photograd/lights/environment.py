@@ -11,20 +11,24 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.lights.base import Light
 from photograd.types import Array
 
 
+@typed_call
 def about_y(angle: float) -> Array:
     """Rotation (3, 3) about +Y, counterclockwise seen against it, for `angle` in radians.
 
     As `world_from_map` it turns what the middle of the picture shows from +Z towards +X.
     """
+    Arguments("about_y").number("angle", angle)
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class EnvironmentMap(Light):
     """Radiance by direction, bilinear between texels, sampled towards its bright parts.

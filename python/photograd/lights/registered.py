@@ -12,6 +12,7 @@ import numpy.typing as npt
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._registry import ModelParameters, Registry
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.lights.base import Light
 from photograd.types import Array
@@ -19,6 +20,7 @@ from photograd.types import Array
 _DIRECTIONS = {"direction", "axis"}  # made unit vectors here, so that any length may be given
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class RegisteredLight(Light):
     """A light whose attributes are the core's parameters and constants, of the same names.
@@ -80,6 +82,7 @@ def _unit_vector(call: Arguments, name: str, value: Any) -> Array:
     return np.asarray(vector / norm)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class PointLight(RegisteredLight):
     """Shines from `position` (3,) to all sides alike; `intensity` (3,) in W/sr."""
@@ -90,6 +93,7 @@ class PointLight(RegisteredLight):
     is_delta: ClassVar[bool] = True
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SpotLight(RegisteredLight):
     """Shines from `position` (3,) along `axis` (3,) in a cone with a soft rim.
@@ -109,6 +113,7 @@ class SpotLight(RegisteredLight):
     is_delta: ClassVar[bool] = True
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class DirectionalLight(RegisteredLight):
     """Parallel light; `direction` (3,) points towards it.
@@ -123,6 +128,7 @@ class DirectionalLight(RegisteredLight):
     is_delta: ClassVar[bool] = True
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class ConstantLight(RegisteredLight):
     """The same `radiance` (3,), W/(m^2 sr), from everywhere ("ambient")."""
@@ -131,6 +137,7 @@ class ConstantLight(RegisteredLight):
     core_name: ClassVar[str] = "constant"
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SkyLight(RegisteredLight):
     """A dome whose radiance (3,) each, W/(m^2 sr), blends by height."""
@@ -141,6 +148,7 @@ class SkyLight(RegisteredLight):
     core_name: ClassVar[str] = "sky"
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SunLight(RegisteredLight):
     """A disc at infinity around `direction` (3,) of equal `radiance` (3,), W/(m^2 sr).
@@ -155,6 +163,7 @@ class SunLight(RegisteredLight):
     core_name: ClassVar[str] = "sun"
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class QuadLight(RegisteredLight):
     """A rectangle that emits on the side of edge_x x edge_y, sampled by solid angle.
@@ -172,6 +181,7 @@ class QuadLight(RegisteredLight):
     core_name: ClassVar[str] = "quad"
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SphereLight(RegisteredLight):
     """A ball around `center` (3,) of `radius`, m, that emits outwards, `radiance` (3,)."""
@@ -182,6 +192,7 @@ class SphereLight(RegisteredLight):
     core_name: ClassVar[str] = "sphere"
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class TriangleLight(RegisteredLight):
     """Corners a, b, c (3,), m, counterclockwise seen from where it emits; `radiance` (3,)."""
@@ -193,11 +204,14 @@ class TriangleLight(RegisteredLight):
     core_name: ClassVar[str] = "triangle"
 
 
+@typed_call
 def cap_height(angular_radius: float) -> float:
     """1 - cos(angular_radius), without cancellation: the sun's constant `height`."""
+    Arguments("cap_height").number("angular_radius", angular_radius)
     return 2.0 * math.sin(0.5 * angular_radius) ** 2
 
 
+@typed_call
 def registry() -> Registry[type[RegisteredLight]]:
     """The classes of all lights of a few numbers, by their names in the core."""
     classes = (

@@ -6,6 +6,7 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
@@ -13,6 +14,7 @@ MAX_OCTAVES = 24
 MAX_BINS = 256
 
 
+@typed_call
 class FrequencyEncoding:
     """p, then sin(2^k pi p_a) for k below `octaves`, then cos(2^k pi p_a) [Mildenhall2020, Eq. 4].
 
@@ -72,6 +74,7 @@ class FrequencyEncoding:
         return d_points
 
 
+@typed_call
 class OneBlobEncoding:
     """A Gaussian around each coordinate, one bin wide, at the centers of `bins` bins of [0, 1].
 

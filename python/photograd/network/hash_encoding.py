@@ -11,6 +11,7 @@ from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
@@ -31,6 +32,7 @@ class Level(NamedTuple):
     dense: bool
 
 
+@typed_call
 class HashEncoding:
     """Features of points in the unit square or cube [Mueller2022].
 
@@ -101,8 +103,9 @@ class HashEncoding:
         Raises:
             RangeError: no levels, or finest below coarsest, or what the constructor refuses.
         """
-        if levels < 1:
-            raise RangeError(message("HashEncoding.geometric", "levels", "at least 1", levels))
+        call = Arguments("HashEncoding.geometric")
+        call.integer("levels", levels, low=1)
+        call.integer("coarsest", coarsest, low=1)
         if finest < coarsest:
             expected = f"at least coarsest, {coarsest}"
             raise RangeError(message("HashEncoding.geometric", "finest", expected, finest))

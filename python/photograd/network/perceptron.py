@@ -9,15 +9,18 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.random import uniform
 
-from photograd._arrays import Arguments
+from photograd._arrays import Arguments, shortened
 from photograd._checks import typed
 from photograd._compiled import _core
+from photograd._typed import typed_call
+from photograd.errors import DtypeError, message
 from photograd.types import Array
 
 Activation = Literal["identity", "relu", "softplus", "exp", "sigmoid"]
 _ACTIVATIONS = get_args(Activation)
 
 
+@typed_call
 class LayerValues:
     """Room for the numbers of all layers at many inputs, used again from call to call.
 
@@ -33,6 +36,7 @@ class LayerValues:
         self.core = _core.PerceptronValues()
 
 
+@typed_call
 class Perceptron:
     """x_{l+1} = a_l(W_l x_l + b_l) for layers l = 0, 1, ...
 
@@ -113,6 +117,9 @@ class Perceptron:
             seed: of the random numbers.
             dtype: float32 or float64.
         """
+        if dtype not in (np.float32, np.float64, "float32", "float64"):
+            expected = "float32 or float64"
+            raise DtypeError(message("Perceptron.initial", "dtype", expected, shortened(dtype)))
         parameters = np.zeros(self.count, np.float64)
         for layer, (W, _) in enumerate(self.layers(parameters)):
             index = np.arange(W.size)

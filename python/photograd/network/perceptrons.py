@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.network.perceptron import Perceptron
 from photograd.types import Array
 
 
+@typed_call
 class Perceptrons:
     """N perceptrons of one shape; inputs are sorted by network.
 

@@ -37,6 +37,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.raster.edges import MeshEdges
 from photograd.raster.lookup import FaceLookup
 from photograd.raster.silhouettes import Segments, line_backward, sums
@@ -47,6 +48,7 @@ OUTSIDE = 1e-3
 """Pixels beside a silhouette, where something nearer than it hides it."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Crossings:
     """Where visible silhouettes cross the segments between the centers of neighboring pixels.
@@ -65,6 +67,7 @@ class Crossings:
     edge: npt.NDArray[np.int64]
 
 
+@typed_call
 def find_crossings(
     positions: FloatArray,
     faces: Array,
@@ -89,6 +92,7 @@ def find_crossings(
     return layered_crossings(positions, faces, [visibility], edges, near=near)[0]
 
 
+@typed_call
 def layered_crossings(
     positions: FloatArray,
     faces: Array,
@@ -118,6 +122,7 @@ def layered_crossings(
     return [found.of_layer(k, layer) for k, layer in enumerate(layers)]
 
 
+@typed_call
 def antialias(color: FloatArray, crossings: Crossings) -> FloatArray:
     """Blend neighboring pixels by how far a silhouette between them reaches across.
 
@@ -140,6 +145,7 @@ def antialias(color: FloatArray, crossings: Crossings) -> FloatArray:
     return color + sums(crossings.taker, gain, len(rows)).reshape(color.shape)
 
 
+@typed_call
 def antialias_backward(
     color: FloatArray,
     crossings: Crossings,

@@ -9,10 +9,12 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.raster.visibility import Visibility
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 def interpolate(attributes: Array, faces: Array, visibility: Visibility) -> FloatArray:
     """Blend the attributes of a triangle's corners by the barycentrics of each pixel.
 
@@ -37,6 +39,7 @@ def interpolate(attributes: Array, faces: Array, visibility: Visibility) -> Floa
     return out
 
 
+@typed_call
 def interpolate_backward(
     attributes: Array, faces: Array, visibility: Visibility, d_out: FloatArray
 ) -> tuple[FloatArray, FloatArray]:

@@ -15,9 +15,11 @@ from __future__ import annotations
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 def polygon_coverage(points: Array, size: tuple[int, int]) -> FloatArray:
     """Area of a polygon in each pixel.
 
@@ -34,7 +36,7 @@ def polygon_coverage(points: Array, size: tuple[int, int]) -> FloatArray:
     """
     call = Arguments("polygon_coverage", np.float64)
     polygon = call.array("points", points, ("K", 2), min_length=3)
-    height, width = size
+    height, width = call.size("size", size)
     out = np.zeros((height, width))
     for y, x in np.ndindex(height, width):
         inside = _clipped(polygon, x, y)
@@ -45,6 +47,7 @@ def polygon_coverage(points: Array, size: tuple[int, int]) -> FloatArray:
     return out
 
 
+@typed_call
 def polygon_coverage_backward(points: Array, d_coverage: Array) -> FloatArray:
     """dL/dpoints (K, 2).
 

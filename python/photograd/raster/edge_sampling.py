@@ -23,6 +23,7 @@ import numpy.typing as npt
 from photograd_course.random import uniform
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.raster.edges import MeshEdges
 from photograd.raster.silhouettes import Segments, line_backward
 from photograd.types import Array, FloatArray
@@ -31,6 +32,7 @@ SIDE = 1e-3
 """Pixels between a point of an edge and where the color on one of its sides is looked up."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class EdgeSamples:
     """Points on the silhouettes of a mesh within a picture.
@@ -52,6 +54,7 @@ class EdgeSamples:
         return self.points + SIDE * self.normals, self.points - SIDE * self.normals
 
 
+@typed_call
 def sample_edges(
     positions: FloatArray,
     edges: MeshEdges,
@@ -90,6 +93,7 @@ def sample_edges(
     return EdgeSamples(points, normals[row], (length / count)[row], found.edges[row])
 
 
+@typed_call
 def edge_gradient(
     positions: FloatArray,
     edges: MeshEdges,
@@ -125,6 +129,7 @@ def edge_gradient(
     return edge_motion_backward(positions, edges, samples, d_motion)
 
 
+@typed_call
 def edge_motion_backward(
     positions: FloatArray, edges: MeshEdges, samples: EdgeSamples, d_motion: FloatArray
 ) -> FloatArray:

@@ -9,9 +9,11 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class MeshEdges:
     """Edges of a triangle mesh, each once. It depends on the faces alone; make it once for a mesh.

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.raster.silhouettes import sums
 from photograd.raster.visibility import Visibility, mesh_arrays
 from photograd.types import Array, FloatArray
@@ -63,6 +64,7 @@ class _Planes:
         return found
 
 
+@typed_call
 def footprints(
     attributes: Array, positions: FloatArray, faces: Array, visibility: Visibility
 ) -> FloatArray:
@@ -90,6 +92,7 @@ def footprints(
     return out
 
 
+@typed_call
 def footprints_backward(
     attributes: Array,
     positions: FloatArray,

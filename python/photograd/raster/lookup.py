@@ -7,10 +7,12 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.raster.visibility import mesh_arrays
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 class FaceLookup:
     """Triangles of one view, listed by tiles of the image: asks for points cost microseconds."""
 

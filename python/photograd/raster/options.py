@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 from photograd._arrays import Arguments
 from photograd._checks import require_choices, require_types
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 
 Compare = Literal[
@@ -30,6 +31,7 @@ Cull = Literal["none", "back", "front"]
 COMPARES, STENCIL_OPS, CULLS = get_args(Compare), get_args(StencilOp), get_args(Cull)
 
 
+@typed_call
 @dataclass(frozen=True)
 class Stencil:
     """The stencil test, and what becomes of the stored 8 bits.
@@ -71,6 +73,7 @@ class Stencil:
         )
 
 
+@typed_call
 @dataclass(frozen=True)
 class RasterOptions:
     """How triangles are drawn.

@@ -16,11 +16,13 @@ from photograd_course.portable_math import matmul
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class ProjectionGradients:
     """dL/d of what `project` read, float64.
@@ -39,6 +41,7 @@ class ProjectionGradients:
     cy: float
 
 
+@typed_call
 def project(vertices: Array, camera: Camera) -> FloatArray:
     """Vertices in homogeneous pixels.
 
@@ -60,6 +63,7 @@ def project(vertices: Array, camera: Camera) -> FloatArray:
     return positions
 
 
+@typed_call
 def project_backward(
     vertices: Array, camera: Camera, d_positions: FloatArray
 ) -> ProjectionGradients:

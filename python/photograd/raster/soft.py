@@ -27,12 +27,14 @@ import numpy.typing as npt
 from photograd_course.portable_math import exp, expm1, sigmoid, softplus
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.raster.silhouettes import sums
 from photograd.raster.visibility import mesh_arrays
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 def soft_silhouette(
     positions: FloatArray, faces: Array, size: tuple[int, int], sigma: float
 ) -> FloatArray:
@@ -58,6 +60,7 @@ def soft_silhouette(
     return -expm1(-_optical_depth(points, faces, _centers(size), sigma)).reshape(size)
 
 
+@typed_call
 def soft_silhouette_backward(
     positions: FloatArray, faces: Array, d_silhouette: FloatArray, sigma: float
 ) -> FloatArray:

@@ -14,11 +14,13 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import ShapeError, message
 from photograd.raster.options import COMPARES, CULLS, RasterOptions, Stencil
 from photograd.types import Array, FloatArray
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Visibility:
     """What each pixel sees.
@@ -70,6 +72,7 @@ class Visibility:
         return self.face >= 0
 
 
+@typed_call
 def rasterize(
     positions: FloatArray,
     faces: Array,
@@ -137,6 +140,7 @@ def rasterize(
     return out
 
 
+@typed_call
 def rasterize_backward(
     positions: FloatArray,
     faces: Array,

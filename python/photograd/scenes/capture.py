@@ -16,6 +16,7 @@ from photograd_course.checks import require_integer, require_number
 from photograd_course.color import srgb_encode, unpremultiply
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.capture.write import Frame
@@ -35,6 +36,7 @@ FILL = 0.9
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 
 
+@typed_call
 def capture_cameras(
     bounds: Points,
     views: int,
@@ -125,6 +127,7 @@ RenderView: TypeAlias = Callable[[Camera, int, int], tuple[Picture, Picture]]
 _SPLITS = {"train": 0, "test": 1}
 
 
+@typed_call
 def capture_scene(
     scene: SceneDescription,
     render_view: RenderView,

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from photograd_course.checks import require_number
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import RangeError, SceneError, message
 from photograd.types import Array
 
@@ -28,6 +29,7 @@ _BOX_SLACK = 1e-6
 """Vertices are float32: near 1 m they are off by up to 6e-8, so this is a few ten roundings."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SceneMesh:
     """Triangles, counter-clockwise seen from outside, with a diffuse albedo in 0..1.
@@ -86,6 +88,7 @@ class SceneMesh:
         return np.asarray(corners, dtype=np.float64)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SunDescription:
     """A disc of equal radiance at infinity.
@@ -150,6 +153,7 @@ class SunDescription:
         return cls(towards / length, radiance, angular_radius)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SkyDescription:
     """Radiance (3,) from straight above, from the horizon and from straight below.
@@ -169,6 +173,7 @@ class SkyDescription:
             object.__setattr__(self, name, _color("SkyDescription", name, getattr(self, name)))
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SceneDescription:
     """Everything that a renderer needs to know of a scene.
@@ -207,6 +212,7 @@ class SceneDescription:
         object.__setattr__(self, "bounds", bounds)
 
 
+@typed_call
 def bounds_of(meshes: tuple[SceneMesh, ...], *, margin: float = 0.02) -> Points:
     """Box (2, 3) of all vertices, with `margin` meters left free on every side."""
     boxes = np.stack([mesh.box for mesh in meshes])

@@ -8,6 +8,7 @@ from typing import Final, TypeAlias
 from photograd_course.checks import require_integer
 from photograd_course.suggest import choose_from
 
+from photograd._typed import typed_call
 from photograd.errors import SceneError, message
 from photograd.scenes.description import SceneDescription
 from photograd.scenes.fine_structures import foliage, fur, thin_structures
@@ -22,6 +23,7 @@ DEFAULT_SCENE: Final = "toy_table"
 """What the demo shows."""
 
 
+@typed_call
 def scenes() -> dict[str, Builder]:
     """All scenes, the demo's first."""
     return {
@@ -36,6 +38,7 @@ def scenes() -> dict[str, Builder]:
     }
 
 
+@typed_call
 def scene(name: str = DEFAULT_SCENE, *, seed: int) -> SceneDescription:
     """Build the scene of this name.
 

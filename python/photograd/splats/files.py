@@ -13,6 +13,7 @@ import numpy as np
 from photograd_course.input_files import read_file
 
 from photograd._ply import MAX_HEADER_BYTES
+from photograd._typed import typed_call
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import Coding, Codings
 from photograd.splats.frames import UNSTATED, Presentation, read_presentation
@@ -47,6 +48,7 @@ _READ, _WRITE = "read_gaussians", "write_gaussians"
 _EXACT = ("means", "log_scales", "rotation", "opacity", "color", "harmonics")
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class GaussianFile:
     """What a file held.
@@ -65,6 +67,7 @@ class GaussianFile:
     presentation: Presentation = UNSTATED
 
 
+@typed_call
 def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFile:
     """Read Gaussians of any format.
 
@@ -96,6 +99,7 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
     raise IoError(message(_READ, f"{path}", expected, got))
 
 
+@typed_call
 def write_gaussians(
     path: Path, gaussians: Gaussians, *, spz_version: int = 3, presentation: Presentation = UNSTATED
 ) -> None:

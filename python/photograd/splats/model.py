@@ -25,6 +25,7 @@ from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
@@ -69,6 +70,7 @@ class GaussianContext:
     screen: Array | None = None  # (N, 2), per pixel
 
 
+@typed_call
 @register
 class GaussianScene(Fittable):
     """params: "means" (N, 3) meters, "log_scales" (N, 3), "quats" (N, 4), "opacity_logits" (N,),

@@ -22,6 +22,7 @@ from photograd import sh
 from photograd._arrays import Arguments
 from photograd._checks import require_bounds, require_choices, require_finite
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.errors import RangeError, message
@@ -39,6 +40,7 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
 }
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Gaussians:
     """N Gaussians, as an optimizer sees them: every number may take any value.
@@ -93,6 +95,7 @@ class Gaussians:
         return Gaussians(**{name: array.astype(dtype) for name, array in self.arrays().items()})
 
 
+@typed_call
 @dataclass(frozen=True)
 class SplatOptions:
     """Policies of splatting. The defaults are those of the original code where it has them.
@@ -152,6 +155,7 @@ class SplatOptions:
         )
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SplatPicture:
     """A picture: color (H, W, 3) with the background, opacity (H, W), depth (H, W).
@@ -166,6 +170,7 @@ class SplatPicture:
     depth: Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SplatContext:
     """What `render_backward` needs of a rendering. The Gaussians must not change in between."""
@@ -182,6 +187,7 @@ class SplatContext:
         return np.asarray(boxes[:, 0] < boxes[:, 1])
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SplatGradients:
     """dL/d of everything that `render` was given.
@@ -200,6 +206,7 @@ class SplatGradients:
     screen: Array
 
 
+@typed_call
 def render(
     gaussians: Gaussians,
     camera: Camera,
@@ -248,6 +255,7 @@ def render(
     return picture, SplatContext(gaussians, picture, prepared, view)
 
 
+@typed_call
 def render_backward(
     context: SplatContext,
     d_color: Array | None = None,

@@ -13,12 +13,14 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.textures.sample import TEXTURE
 from photograd.types import Array
 
 LN_2 = 0.6931471805599453
 
 
+@typed_call
 def build_mips(texture: Array) -> list[Array]:
     """All levels of a texture (H, W, C), down to a single texel; level 0 is `texture` itself.
 
@@ -33,6 +35,7 @@ def build_mips(texture: Array) -> list[Array]:
     return mips
 
 
+@typed_call
 def build_mips_backward(d_mips: Sequence[Array]) -> Array:
     """dL/dtexture (H, W, C) for dL/dlevel of every level, as `sample_mips_backward` gives them.
 
@@ -45,6 +48,7 @@ def build_mips_backward(d_mips: Sequence[Array]) -> Array:
     return copies[0]
 
 
+@typed_call
 def mip_level(shape: Sequence[int], footprint: Array) -> Array:
     """The level (N,) whose texels are as large as the longer side of each footprint.
 
@@ -62,10 +66,12 @@ def mip_level(shape: Sequence[int], footprint: Array) -> Array:
     """
     call = Arguments("mip_level")
     footprint = call.array("footprint", footprint, ("N", 2, 2), finite=False)
-    level: Array = _core.mip_level(int(shape[0]), int(shape[1]), footprint)
+    height, width = call.size("shape", tuple(shape)[:2])
+    level: Array = _core.mip_level(height, width, footprint)
     return level
 
 
+@typed_call
 def mip_level_backward(shape: Sequence[int], footprint: Array, d_level: Array) -> Array:
     """The adjoint of `mip_level`: with r^2 the square of the longer side, level = log2(r^2) / 2.
 
@@ -82,7 +88,8 @@ def mip_level_backward(shape: Sequence[int], footprint: Array, d_level: Array) -
     call = Arguments("mip_level_backward")
     footprint = call.array("footprint", footprint, ("N", 2, 2))
     d_level = call.array("d_level", d_level, ("N",))
-    texels = np.array([shape[1], shape[0]], footprint.dtype)
+    height, width = call.size("shape", tuple(shape)[:2])
+    texels = np.array([width, height], footprint.dtype)
     square = np.square(footprint * texels).sum(axis=2)
     longer = square.argmax(axis=1)
     rows = np.arange(len(footprint))
@@ -93,6 +100,7 @@ def mip_level_backward(shape: Sequence[int], footprint: Array, d_level: Array) -
     return d_footprint
 
 
+@typed_call
 def sample_mips(mips: Sequence[Array], uv: Array, level: Array) -> Array:
     """Look up points (N, 2) at levels (N,): bilinear in two levels, linear between them.
 
@@ -111,6 +119,7 @@ def sample_mips(mips: Sequence[Array], uv: Array, level: Array) -> Array:
     return out
 
 
+@typed_call
 def sample_mips_backward(
     mips: Sequence[Array], uv: Array, level: Array, d_color: Array
 ) -> tuple[list[Array], Array, Array]:

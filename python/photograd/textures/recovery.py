@@ -29,8 +29,9 @@ from photograd._checkpoint import (
     load_checkpoint,
     save_checkpoint,
 )
-from photograd._descend import Progress, descend, progress_bar, run_folder
+from photograd._descend import Progress, Run, changing, descend, progress_bar, run_folder
 from photograd._notebook import EDGE, RED, png_of_sheet, sheet
+from photograd._typed import typed_call
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.textures.sample import TexturePlan, sample_backward
 from photograd.types import Array
@@ -39,6 +40,7 @@ FILE_NAME = "texture.npz"
 SAFETY = 0.95  # of the bound that keeps descent from diverging
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class RecoveredTexture:
     """A texture recovered from samples.
@@ -66,6 +68,7 @@ class RecoveredTexture:
         return png_of_sheet(sheet([shown, unseen], 2, EDGE // 2))
 
 
+@typed_call
 def stable_learning_rate(
     uv: Array, shape: Sequence[int], channels: int, *, steps: int = 100
 ) -> float:
@@ -84,7 +87,10 @@ def stable_learning_rate(
     Raises:
         DtypeError, ShapeError, RangeError: points or shape that make no plan.
     """
-    uv = Arguments("stable_learning_rate").array("uv", uv, ("N", 2), finite=False)
+    call = Arguments("stable_learning_rate")
+    uv = call.array("uv", uv, ("N", 2), finite=False, min_length=1)
+    call.integer("channels", channels, low=1)
+    call.integer("steps", steps, low=1)
     # With black targets the gradient is H T itself, here of a texture with one channel.
     plan = TexturePlan(uv, np.zeros((len(uv), 1), uv.dtype), shape)
     vector = np.ones(plan.shape, uv.dtype)
@@ -97,6 +103,7 @@ def stable_learning_rate(
     return SAFETY * 2.0 / (largest / channels)
 
 
+@typed_call
 def recover(
     uv: Array,
     colors: Array,
@@ -149,11 +156,12 @@ def recover(
                 if on_step:
                     on_step(Progress(job.step_number, steps, job.losses[-1]))
 
-            run = descend(job, folder, after_step=after_step, should_stop=should_stop)
-        if run.finished:
-            job.loss()
-        losses = np.array(job.losses)
-    return RecoveredTexture(job.texture, losses, _unseen(uv, shape), learning_rate)
+            def result(run: Run) -> RecoveredTexture:
+                last = [job.loss()] if run.finished else []
+                losses = np.array(job.losses + last)
+                return RecoveredTexture(job.texture, losses, _unseen(uv, shape), learning_rate)
+
+            return descend(job, folder, result, after_step=after_step, should_stop=should_stop)
 
 
 class _Descent:
@@ -166,33 +174,35 @@ class _Descent:
         self.gradient = np.empty_like(texture)
         self.losses: list[float] = []
         self.step_number = 0
+        self.changing = False
 
     @property
     def steps(self) -> int:
         return int(self.options["steps"])
 
     def loss(self) -> float:
-        """Of the texture as it is, noted; its gradient lies in `gradient`."""
+        """Of the texture as it is; its gradient lies in `gradient`."""
         loss, _ = self.plan.loss_and_gradient(self.texture, out=self.gradient)
         if not np.isfinite(loss):
             got = f"{loss} before step {self.step_number}"
             remedy = f"lower learning_rate, {self.options['learning_rate']:.6g}"
             raise Error(message("recover", "loss", "a finite number", got, remedy))
-        self.losses.append(loss)
         return loss
 
     def step(self) -> float:
         loss = self.loss()
         self.gradient *= self.texture.dtype.type(self.options["learning_rate"])
-        self.texture -= self.gradient
-        self.step_number += 1
+        with changing(self):
+            self.texture -= self.gradient
+            self.losses.append(loss)
+            self.step_number += 1
         return loss
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> Path:
         meta = {"step": self.step_number, "points": self.digest, "options": self.options}
         rate = self.options["learning_rate"]
         history = np.array([(k, loss, rate) for k, loss in enumerate(self.losses)])
-        save_checkpoint(
+        return save_checkpoint(
             folder / FILE_NAME,
             Checkpoint(meta, {"texture": self.texture}, {}, {}, history.reshape(-1, 3)),
         )

@@ -8,11 +8,13 @@ import numpy as np
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.types import Array
 
 TEXTURE = ("H", "W", "C")
 
 
+@typed_call
 def sample(texture: Array, uv: Array, *, out: Array | None = None) -> Array:
     """Look up points of a texture.
 
@@ -39,6 +41,7 @@ def sample(texture: Array, uv: Array, *, out: Array | None = None) -> Array:
     return out
 
 
+@typed_call
 def sample_backward(texture: Array, uv: Array, d_color: Array) -> tuple[Array, Array]:
     """The adjoint of `sample`.
 
@@ -66,6 +69,7 @@ def sample_backward(texture: Array, uv: Array, d_color: Array) -> tuple[Array, A
 # The loss of a texture against colors at points, and its gradient, as often as wanted.
 
 
+@typed_call
 class TexturePlan:
     """Points of a texture sorted by tile, with the colors that they should have.
 
@@ -110,6 +114,7 @@ class TexturePlan:
         return call.run(self._core.loss_and_gradient, texture, gradient), gradient
 
 
+@typed_call
 def loss_and_gradient(texture: Array, uv: Array, colors: Array) -> tuple[float, Array]:
     """L = mean over points and channels of (T(uv) - color)^2, and dL/dT (H, W, C), once.
 

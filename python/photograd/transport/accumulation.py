@@ -26,12 +26,14 @@ from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._files import read_npz
 from photograd._notebook import png, smaller
+from photograd._typed import typed_call
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.types import Array
 
 VERSION = 1
 
 
+@typed_call
 @dataclass(eq=False)
 class Accumulation:
     """Samples of every pixel, summed up.

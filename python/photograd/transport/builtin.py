@@ -12,6 +12,7 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.errors import SceneError, message
@@ -342,6 +343,7 @@ BUILTIN: dict[str, Callable[[int], Scene]] = {
 """Scenes by name, made for pictures of a given size."""
 
 
+@typed_call
 def builtin_scene(name: str, size: int = 256) -> Scene:
     """A scene that needs no file, with a square camera.
 

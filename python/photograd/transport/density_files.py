@@ -14,6 +14,7 @@ import numpy as np
 
 from photograd._files import read_npy
 from photograd._memory import require_room
+from photograd._typed import typed_call
 from photograd.errors import IoError, RangeError, message
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import VdbFile, read_vdb
@@ -37,6 +38,7 @@ def is_placed(path: Path) -> bool:
     return path.name.lower().endswith(PLACED)
 
 
+@typed_call
 def read_density(
     path: Path,
     *,

@@ -15,6 +15,7 @@ from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
@@ -28,6 +29,7 @@ STILL = ("shapes", "camera", "lens", "shutter", "sdfs")
 NO_EDGES = "where things are has no derivative here: edges and shadows would move, too"
 
 
+@typed_call
 def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array]:
     """A step of one along a parameter: {its name: an array of its shape}.
 
@@ -58,6 +60,7 @@ def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array
     return {name: step}
 
 
+@typed_call
 def derivative_image(
     tracer: PathTracer,
     along: str | Mapping[str, Array],
@@ -101,6 +104,7 @@ def derivative_image(
     return picture, derivative
 
 
+@typed_call
 def add_derivative_samples(
     tracer: PathTracer,
     picture: Accumulation,

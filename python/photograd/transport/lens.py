@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from photograd._checks import require_bounds
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
 from photograd.types import FloatArray
 
 
+@typed_call
 @dataclass(frozen=True)
 class Lens:
     """A thin lens before the camera (cpp/photograd/camera/thin_lens.h).
@@ -39,6 +41,7 @@ PINHOLE = Lens(0.0, 1.0)
 # A shutter that stays open while the camera moves: what is sharp in no moment is blurred.
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Shutter:
     """The camera moves from its pose to `closing` at one speed, straight on and about one axis.

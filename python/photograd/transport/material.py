@@ -12,6 +12,7 @@ from photograd_course.suggest import choose_from
 from photograd import bsdf
 from photograd._arrays import Arguments
 from photograd._registry import ModelParameter, ModelParameters
+from photograd._typed import typed_call
 from photograd.bsdf import specular
 from photograd.errors import SceneError, message
 from photograd.transport.shape_checks import check_range
@@ -24,6 +25,7 @@ ALPHA = ModelParameter("alpha", 1, 0.0, 1.0, "")
 """What any material may have besides the parameters of its model."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class Material:
     """A reflectance model and its parameters.

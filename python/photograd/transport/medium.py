@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.bsdf.phase import registry as phase_functions
 from photograd.errors import RangeError, message
 from photograd.types import Array
@@ -24,6 +25,7 @@ VACUUM = "vacuum"
 """In place of a medium: nothing."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class DensityGrid:
     """A density that scales a medium's sigma_t from place to place.
@@ -80,6 +82,7 @@ class DensityGrid:
         return np.ascontiguousarray(np.linalg.inv(self.world_from_box)[:3])
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Medium:
     """Particles that absorb and scatter, in the field's usual terms: extinction and albedo.

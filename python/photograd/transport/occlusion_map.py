@@ -18,6 +18,7 @@ import numpy as np
 from photograd_course.suggest import choose_from
 
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, SceneError, message
 from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Scene
@@ -117,6 +118,7 @@ class OcclusionBake:
         return Texture(continued(values, self.points.covered)[..., None], ("clamp", "clamp"))
 
 
+@typed_call
 def bake_ambient_occlusion(
     scene: Scene,
     shape: str,

@@ -17,6 +17,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import require_bounds
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
@@ -25,6 +26,7 @@ from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True)
 class ParticleOptions:
     """How far particles are followed.
@@ -57,6 +59,7 @@ class ParticleOptions:
 PARTICLES = ParticleOptions()
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class IrradianceSensor:
     """A rectangle of cells that counts the light through its front and lets it go on.
@@ -104,6 +107,7 @@ class IrradianceSensor:
         return np.array([self.corner, self.edge_x, self.edge_y])
 
 
+@typed_call
 def trace_light(
     tracer: PathTracer,
     sensor: IrradianceSensor,
@@ -150,6 +154,7 @@ def trace_light(
     return total
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Emitted:
     """Particles as they leave their lights.
@@ -169,6 +174,7 @@ class Emitted:
     entries: Array
 
 
+@typed_call
 def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0) -> Emitted:
     """The particles that `trace_light` follows, `first` to `first + count - 1`.
 
@@ -209,6 +215,7 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
 # Photon mapping: particles kept where they land, and pictures read off their density.
 
 
+@typed_call
 class PhotonMap:
     """What particles brought to the surfaces of a scene that are not specular.
 

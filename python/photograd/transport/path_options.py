@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 from photograd._arrays import Arguments
 from photograd._checks import require_bounds, require_choices, require_instance
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 
 Strategy = Literal["light", "bsdf", "mis"]
@@ -19,6 +20,7 @@ SAMPLERS: tuple[Sampler, ...] = get_args(Sampler)
 NEVER = 1 << 20  # a vertex that no path reaches
 
 
+@typed_call
 @dataclass(frozen=True)
 class PathOptions:
     """How light paths are sampled.

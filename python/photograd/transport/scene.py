@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from photograd_course.suggest import choose_from
 
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import SceneError, message
 from photograd.lights import Light
@@ -27,6 +28,7 @@ from photograd.transport.texture import Texture
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Environment:
     """The radiance of a dome around everything, by height alone; three equal colors are constant.
@@ -53,6 +55,7 @@ class Environment:
         return cls(color, color, color)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Scene:
     """All that a path tracer needs.

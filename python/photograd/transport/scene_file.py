@@ -14,6 +14,7 @@ from photograd_course.toml_limits import parse_toml
 
 from photograd._arrays import Arguments
 from photograd._registry import ModelParameter, ModelParameters
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -38,6 +39,7 @@ from photograd.transport.shape_checks import check_range
 from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, box, rectangle
 
 
+@typed_call
 def read_scene(path: str | Path) -> Scene:
     """The scene that a TOML file describes; docs/scene_file.md has all that may stand there.
 

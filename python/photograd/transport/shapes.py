@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import RangeError, SceneError, message
 from photograd.geometry.sdf import Body
 from photograd.geometry.sdf import Shape as SdfNode
@@ -25,6 +26,7 @@ from photograd.transport.texture import TextureUse
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class MeshShape:
     """A triangle mesh in the world.
@@ -114,6 +116,7 @@ class MeshShape:
         return np.array([world.min(axis=0), world.max(axis=0)])
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SphereShape:
     """A perfect sphere; its outside emits.
@@ -160,6 +163,7 @@ class SphereShape:
         return np.array([ends.min(axis=0) - self.radius, ends.max(axis=0) + self.radius])
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SdfShape:
     """What `photograd.geometry.sdf` builds, with a surface.

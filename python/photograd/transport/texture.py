@@ -25,6 +25,7 @@ from photograd_course.color import srgb_decode
 
 from photograd._arrays import Arguments
 from photograd._checks import require_bounds, require_choices, typed
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.images.read import read_header, read_image
 from photograd.textures import sample
@@ -39,6 +40,7 @@ FILTERS: tuple[Filter, ...] = get_args(Filter)
 ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Texture:
     """An image that scales parameters of materials.
@@ -67,6 +69,7 @@ class Texture:
         return int(self.values.shape[2])
 
 
+@typed_call
 @dataclass(frozen=True)
 class TextureUse:
     """A parameter of a material is its value times a texture.
@@ -80,6 +83,7 @@ class TextureUse:
     channel: int = 0
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class NormalMap:
     """Normals in the frame of the texture coordinates; they are part of the shape, not parameters.
@@ -114,6 +118,7 @@ class NormalMap:
         return cls(values * np.array([scale, scale, 1], np.float32), wrap)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class OcclusionMap:
     """How much of the ambient light reaches a surface: 1 + strength (values - 1).
@@ -159,6 +164,7 @@ class OcclusionMap:
         return np.asarray(1 + np.float32(self.strength) * (found - 1), np.float32)
 
 
+@typed_call
 def read_texture(
     path: Path,
     encoding: Encoding = "srgb",

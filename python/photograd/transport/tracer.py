@@ -14,6 +14,7 @@ from photograd_course.suggest import choose_from
 from photograd._arrays import Arguments
 from photograd._checks import require_instance
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, sample_counts
@@ -39,6 +40,7 @@ from photograd.types import Array
 ORDER = (MeshShape, SphereShape, SdfShape)  # in which the core numbers shapes
 
 
+@typed_call
 class PathTracer:
     """A scene ready to be traced.
 
@@ -299,8 +301,8 @@ class PathTracer:
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))
-        numbers = camera_numbers(view)
-        _core.ambient_occlusion(self._geometry, numbers, radius, seed, sums.count, spp, free)
+        given = (self._geometry, camera_numbers(view), radius, seed, sums.count, spp, free)
+        Arguments("PathTracer.add_occlusion").run(_core.ambient_occlusion, *given)
         sums.radiance += free[..., None]
         sums.squares += free[..., None]  # 0 and 1 are their own squares
         sums.count += spp

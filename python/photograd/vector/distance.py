@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
 from photograd.vector.flatten import bernstein
 
@@ -23,6 +24,7 @@ POWERS = {
 }
 
 
+@typed_call
 def curve_distance(control: Array, points: Array) -> tuple[FloatArray, FloatArray]:
     """Distances to a Bezier curve, and where on it the closest points are.
 
@@ -57,6 +59,7 @@ def curve_distance(control: Array, points: Array) -> tuple[FloatArray, FloatArra
     return nearest, where
 
 
+@typed_call
 def curve_distance_backward(control: Array, points: Array, d_distance: Array) -> FloatArray:
     """dL/dcontrol (d + 1, 2); points on the curve contribute nothing.
 
@@ -79,6 +82,7 @@ def curve_distance_backward(control: Array, points: Array, d_distance: Array) ->
     return found
 
 
+@typed_call
 def distance_stroke(control: Array, width: float, size: tuple[int, int]) -> FloatArray:
     """Coverage (H, W) of a stroke with round caps, as a ramp over the distance to its border.
 
@@ -93,7 +97,9 @@ def distance_stroke(control: Array, width: float, size: tuple[int, int]) -> Floa
     Raises:
         DtypeError, ShapeError, RangeError: as for `curve_distance`, a width below 1.
     """
-    width = Arguments("distance_stroke").number("width", width, low=1)
+    call = Arguments("distance_stroke")
+    width = call.number("width", width, low=1)
+    size = call.size("size", size)
     y, x = np.mgrid[: size[0], : size[1]] + 0.5
     distance, _ = curve_distance(control, np.stack([x.ravel(), y.ravel()], axis=1))
     found: FloatArray = np.clip(0.5 + width / 2 - distance, 0, 1).reshape(size)

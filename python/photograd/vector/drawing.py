@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import ShapeError, message
 from photograd.types import Array, FloatArray
 from photograd.vector.shapes import (
@@ -35,6 +36,7 @@ KINDS = (Solid, LinearGradient, RadialGradient)
 """Paints, by the number that the core gives them."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class DrawingParameters:
     """All numbers of a drawing with respect to which it can be differentiated, or derivatives.
@@ -61,6 +63,7 @@ class DrawingParameters:
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class DrawingLayout:
     """What a drawing's numbers mean; C curves, L subpaths, S shapes.
@@ -97,6 +100,7 @@ class DrawingLayout:
         return np.repeat(np.arange(len(self.rule)), np.diff(self.subpath_begin))
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Drawing:
     """Shapes, the first at the bottom.

@@ -31,7 +31,8 @@ from photograd._checkpoint import (
 )
 from photograd._checks import require_bounds
 from photograd._compiled import _core
-from photograd._descend import Progress, descend, progress_bar, run_folder
+from photograd._descend import Progress, Run, changing, descend, progress_bar, run_folder
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.types import Array, FloatArray
 from photograd.vector.drawing import Drawing, DrawingParameters
@@ -41,6 +42,7 @@ from photograd.vector.shapes import LARGEST, Shape, Solid, Stroke, Subpath, chec
 
 CurveKind = Literal["stroke", "fill"]
 CURVE_KINDS: tuple[CurveKind, ...] = get_args(CurveKind)
+MAX_CURVES = 1 << 20
 DRAWING_FILE = "drawing.npz"
 WHITE = (1.0, 1.0, 1.0)
 NARROWEST = 0.25
@@ -56,6 +58,7 @@ RATES = {
 """The option that is the learning rate of each group of numbers."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class VectorFitOptions:
     """How a drawing is fitted.
@@ -83,6 +86,7 @@ class VectorFitOptions:
         require_bounds(self, "seed", low=0, high=(1 << 63) - 1)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class FittedDrawing:
     """A drawing that was fitted to a picture.
@@ -104,6 +108,7 @@ class FittedDrawing:
     seconds: float
 
 
+@typed_call
 def fit_drawing(
     drawing: Drawing,
     picture: Array,
@@ -116,6 +121,7 @@ def fit_drawing(
     resume: bool = False,
     bar: bool = False,
     should_stop: Callable[[], bool] = lambda: False,
+    checkpoint_seconds: float = 30.0,
 ) -> FittedDrawing:
     """Fit numbers of a drawing to a picture.
 
@@ -127,10 +133,11 @@ def fit_drawing(
         groups: fields of `DrawingParameters` that are fitted; the others are held.
         background: (3,) opaque color behind the drawing.
         flattening: of curves; None takes the defaults.
-        folder: for the checkpoint, DIR/drawing.npz, written every 30 s and at the end.
+        folder: for the checkpoint, DIR/drawing.npz, written on the way and at the end.
         resume: go on from that checkpoint, to the same bits as without interruption.
         bar: show progress on stderr.
         should_stop: asked before each step.
+        checkpoint_seconds: between two checkpoints.
 
     Raises:
         DtypeError, ShapeError, RangeError: no such picture, unknown groups, a checkpoint of another
@@ -156,13 +163,17 @@ def fit_drawing(
                 if on_step:
                     on_step(Progress(job.step_number, job.steps, job.losses[-1]))
 
-            run = descend(job, checkpoints, after_step=after_step, should_stop=should_stop)
-    image = job.rendering().picture[..., :3]
-    loss = float(np.mean(np.square(image - picture)))
-    losses = np.array(job.losses)
-    return FittedDrawing(job.drawing, image, losses, loss, run.finished, run.seconds)
+            return descend(
+                job,
+                checkpoints,
+                job.result,
+                after_step=after_step,
+                should_stop=should_stop,
+                checkpoint_seconds=checkpoint_seconds,
+            )
 
 
+@typed_call
 def fit_curves(
     picture: Array,
     count: int = 200,
@@ -174,6 +185,7 @@ def fit_curves(
     resume: bool = False,
     bar: bool = False,
     should_stop: Callable[[], bool] = lambda: False,
+    checkpoint_seconds: float = 30.0,
 ) -> FittedDrawing:
     """Fit random curves to a picture [Li2020].
 
@@ -183,14 +195,14 @@ def fit_curves(
         options: of the descent, and the seed of the curves.
         kind: "stroke" takes cubic curves with a width, "fill" closed shapes of four cubic curves.
         background: (3,) behind the curves; None takes the mean color of the picture.
-        folder, resume, bar, should_stop: as for `fit_drawing`.
+        folder, resume, bar, should_stop, checkpoint_seconds: as for `fit_drawing`.
 
     Raises:
         DtypeError, ShapeError, RangeError, IoError: as of `fit_drawing`; no curves.
     """
     call = Arguments("fit_curves", np.float64)
     picture = call.array("picture", picture, ("H", "W", 3), min_length=1)
-    call.integer("count", count, low=1, high=1 << 20)
+    call.integer("count", count, low=1, high=MAX_CURVES)
     check_choice("fit_curves", "kind", kind, CURVE_KINDS)
     options = options or VectorFitOptions()
     return fit_drawing(
@@ -202,9 +214,11 @@ def fit_curves(
         resume=resume,
         bar=bar,
         should_stop=should_stop,
+        checkpoint_seconds=checkpoint_seconds,
     )
 
 
+@typed_call
 def random_curves(picture: FloatArray, count: int, *, kind: CurveKind, seed: int) -> Drawing:
     """Curves all over a picture in the colors that it has there, large ones at the bottom.
 
@@ -213,7 +227,14 @@ def random_curves(picture: FloatArray, count: int, *, kind: CurveKind, seed: int
         count: of curves.
         kind: as for `fit_curves`.
         seed: of their places and forms.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: no picture, no curves or more than 2^20.
     """
+    call = Arguments("random_curves", np.float64)
+    picture = call.array("picture", picture, ("H", "W", 3), min_length=1)
+    call.integer("count", count, low=1, high=MAX_CURVES)
+    check_choice("random_curves", "kind", kind, CURVE_KINDS)
     height, width = picture.shape[:2]
     u = np.stack([uniform(seed, pixel=np.arange(count), dimension=d) for d in range(26)], axis=1)
     size = np.linspace(0.3, 0.05, count) * max(height, width)
@@ -261,6 +282,7 @@ class VectorFit:
         self.params = {name: a.copy() for name, a in drawing.parameters.arrays().items()}
         self.optimizer = Adam(epsilon=1e-12, threads=max(1, _core.thread_count()))
         self.step_number = 0
+        self.changing = False
         self.losses: list[float] = []
         self._picture, self._flattening = picture, flattening
         self._background = np.append(background, 1.0)
@@ -293,11 +315,23 @@ class VectorFit:
         factor = exponential(self.options.final_rate, self.steps)(self.step_number)
         rates = {name: factor * getattr(self.options, RATES[name]) for name in self.groups}
         fitted = {name: self.params[name] for name in self.groups}
-        self.optimizer.step(fitted, {name: found[name] for name in self.groups}, rates)
-        self._hold()
-        self.losses.append(loss)
-        self.step_number += 1
+        with changing(self):
+            self.optimizer.step(fitted, {name: found[name] for name in self.groups}, rates)
+            self._hold()
+            self.losses.append(loss)
+            self.step_number += 1
         return loss
+
+    def result(self, run: Run) -> FittedDrawing:
+        """The drawing as it is now, compared with the picture.
+
+        Args:
+            run: that has led to it.
+        """
+        image = self.rendering().picture[..., :3]
+        loss = float(np.mean(np.square(image - self._picture)))
+        losses = np.array(self.losses)
+        return FittedDrawing(self.drawing, image, losses, loss, run.finished, run.seconds)
 
     def _hold(self) -> None:
         """Hold numbers to where they mean something."""
@@ -312,7 +346,7 @@ class VectorFit:
             if end - first > 1:
                 np.maximum.accumulate(p["offsets"][first:end], out=p["offsets"][first:end])
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> Path:
         """Write the checkpoint atomically.
 
         Args:
@@ -325,7 +359,7 @@ class VectorFit:
         rows = [(step, loss, 0.0) for step, loss in enumerate(self.losses)]
         history = np.array(rows, np.float64).reshape(-1, 3)
         checkpoint = Checkpoint(meta, self.params, self.optimizer.state(), {}, history)
-        save_checkpoint(folder / DRAWING_FILE, checkpoint)
+        return save_checkpoint(folder / DRAWING_FILE, checkpoint)
 
     def load(self, folder: Path) -> None:
         """Take what `save` wrote.

@@ -12,20 +12,27 @@ needs no search.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import FloatArray
 from photograd.vector.drawing import DrawingLayout
 
 BINOMIALS = np.array([[1, 0, 0, 0], [1, 1, 0, 0], [1, 2, 1, 0], [1, 3, 3, 1]], np.float64)
 MOST_SEGMENTS = 1024
 """Of one curve."""
+MANY_SEGMENTS = 64
+"""Of more than these, a curve keeps those that a picture can see."""
+CHUNK = 1 << 18
+"""Vertices that are looked at together."""
 
 
+@typed_call
 @dataclass(frozen=True)
 class Flattening:
     """How finely curves become polylines.
@@ -54,6 +61,33 @@ class Flattening:
 
 
 @dataclass(frozen=True, eq=False)
+class VisibleArea:
+    """What a picture can see of curves.
+
+    Attributes:
+        height, width: of the picture, in pixels.
+        margin: (C,) pixels by which each curve's shape reaches beyond the curve.
+    """
+
+    height: int
+    width: int
+    margin: FloatArray
+
+    def sides(self, at: FloatArray, margin: FloatArray) -> npt.NDArray[np.int8]:
+        """(V,) 1 to 4 for points left, right, above and below of what is visible, 0 for others.
+
+        Args:
+            at: (V, 2) points.
+            margin: (V,) of the curve of each.
+        """
+        x, y = at.T
+        left, right = x < -margin, x > self.width + margin
+        above, below = y < -margin, y > self.height + margin
+        found: npt.NDArray[np.int8] = np.select([left, right, above, below], [1, 2, 3, 4], 0)
+        return found.astype(np.int8)
+
+
+@dataclass(frozen=True, eq=False)
 class Polylines:
     """The polylines of a drawing's subpaths, as weights of its control points.
 
@@ -70,13 +104,21 @@ class Polylines:
     corner: npt.NDArray[np.bool_]
 
     @classmethod
-    def of(cls, layout: DrawingLayout, points: FloatArray, flattening: Flattening) -> Polylines:
+    def of(
+        cls,
+        layout: DrawingLayout,
+        points: FloatArray,
+        flattening: Flattening,
+        visible: VisibleArea | None = None,
+    ) -> Polylines:
         """Of all subpaths; of a closed one, the first vertex is not repeated at its end.
 
         Args:
             layout: of the drawing.
             points: (P, 2) its control points.
             flattening: how finely.
+            visible: leaves out what lies beyond one side of a picture, where it is many; None keeps
+                everything.
         """
         count = segment_counts(layout, points, flattening)
         filled = np.diff(layout.curve_begin) > 0
@@ -84,9 +126,9 @@ class Polylines:
         vertices = count.copy()
         vertices[last] += 1
         # A single point without curves is no line, and has no vertices.
-        curve = np.repeat(np.arange(len(count)), vertices)
-        begin = np.concatenate([[0], np.cumsum(vertices)])
-        number = np.arange(len(curve)) - begin[curve]
+        kept = _kept_vertices(layout, points, count, vertices, visible)
+        curve, number = (np.concatenate(each) for each in zip(*kept, strict=True))
+        begin = np.searchsorted(curve, np.arange(len(count) + 1))
         t = number / count[curve]
         return cls(
             layout.control[curve],
@@ -113,6 +155,38 @@ class Polylines:
             for i in range(2)
         ]
         return np.stack(found, axis=1)
+
+
+def _kept_vertices(
+    layout: DrawingLayout,
+    points: FloatArray,
+    count: npt.NDArray[np.int64],
+    vertices: npt.NDArray[np.int64],
+    visible: VisibleArea | None,
+) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+    """Curve and number of each vertex, a chunk of curves after the other.
+
+    A vertex between neighbors that lie beyond the same side of the picture is left out. The chord
+    lies there, too, and passes every visible height as often and in the same direction: a
+    fill inside of the picture stays what it is.
+    """
+    end = np.cumsum(vertices)
+    total = int(end[-1]) if len(end) else 0
+    borders = np.searchsorted(end, np.arange(CHUNK, total, CHUNK))
+    for curves in np.split(np.arange(len(count)), np.unique(borders)):
+        curve = np.repeat(curves, vertices[curves])
+        first = np.concatenate([[0], np.cumsum(vertices[curves])])[:-1]
+        number = np.arange(len(curve)) - np.repeat(first, vertices[curves])
+        many = count[curve] > MANY_SEGMENTS
+        if visible is not None and many.any():
+            weight = bernstein(layout.degree[curve], number / count[curve])
+            at = np.einsum("vk,vki->vi", weight, points[layout.control[curve]])
+            side = visible.sides(at, visible.margin[curve])
+            inner = (number > 0) & (number < vertices[curve] - 1) & many
+            inner[1:-1] &= (side[1:-1] > 0) & (side[1:-1] == side[:-2]) & (side[1:-1] == side[2:])
+            inner[[0, -1]] = False
+            curve, number = curve[~inner], number[~inner]
+        yield curve, number
 
 
 def bernstein(degree: npt.NDArray[np.int64], t: FloatArray) -> FloatArray:

@@ -23,13 +23,23 @@ import numpy.typing as npt
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
+from photograd._memory import require_room
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
-from photograd.vector.drawing import Drawing, DrawingParameters, check_shape_number, zeros_like
-from photograd.vector.flatten import Flattening, Polylines
+from photograd.vector.cost import require_affordable
+from photograd.vector.drawing import (
+    Drawing,
+    DrawingLayout,
+    DrawingParameters,
+    check_shape_number,
+    zeros_like,
+)
+from photograd.vector.flatten import Flattening, Polylines, VisibleArea
 
 TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class RenderingGradients:
     """Derivatives of a loss.
@@ -43,6 +53,7 @@ class RenderingGradients:
     background: FloatArray
 
 
+@typed_call
 class Rendering:
     """A drawing with its picture, and what its gradient needs.
 
@@ -70,23 +81,27 @@ class Rendering:
 
         Raises:
             DtypeError, ShapeError, RangeError: a background that is not four finite numbers, a size
-                of no or more than 2^26 pixels, outlines that leave the million pixels.
+                of no or more than 2^26 pixels or beyond memory, outlines that leave the million
+                pixels, edges that cross too often (PHOTOGRAD_MAX_CROSSINGS).
         """
         self._call = call = Arguments("Rendering", np.float64)
         self.drawing = drawing
         self._background = call.array("background", background, (4,))
         height, width = (call.integer("size", each, low=1, high=1 << 26) for each in size)
         parameters, layout = drawing.parameters, drawing.layout
-        self._lines = Polylines.of(layout, parameters.points, flattening or Flattening())
+        visible = VisibleArea(height, width, _margins(layout, parameters.widths))
+        self._lines = Polylines.of(layout, parameters.points, flattening or Flattening(), visible)
         vertices = self._lines.vertices(parameters.points)
         self._strokes = self._outlined(vertices, (flattening or Flattening()).arc)
         outlines, sizes, owners = self._strokes.outlines()
         self._order, contours, shapes = self._contours(len(vertices), sizes, owners)
         everything = np.concatenate([vertices, outlines])[self._order]
         rule = np.where(layout.stroked, 0, layout.rule).astype(np.uint8)
+        require_affordable(everything, contours, shapes, height, width)
         self._shapes = call.run(
             _core.VectorShapes, everything, contours, shapes, rule, height, width
         )
+        require_room("Rendering", "the picture", 64 * height * width, argument="size")
         self._paints = (
             layout.kind,
             layout.stop_begin,
@@ -207,6 +222,14 @@ class Rendering:
         return points, 0.5 * widths
 
 
+def _margins(layout: DrawingLayout, widths: FloatArray) -> FloatArray:
+    """(C,) pixels that a stroke reaches beyond each curve: corners of caps, and miters."""
+    reach = np.where(layout.stroked, 0.5 * widths * np.maximum(layout.miter_limit, 1.5), 0.0)
+    found: FloatArray = np.repeat(reach[layout.shape_of_subpath], np.diff(layout.curve_begin)) + 1
+    return found
+
+
+@typed_call
 def render(
     drawing: Drawing,
     size: tuple[int, int],

@@ -13,6 +13,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array, FloatArray
 
@@ -28,6 +29,7 @@ CIRCLE = 0.5522847498307936
 """4/3 (sqrt(2) - 1): a quarter of the unit circle as a cubic Bezier, off by 2.7e-4 at most."""
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Subpath:
     """Bezier curves that follow one another; neighbors share an end.
@@ -68,8 +70,9 @@ class Subpath:
             points: (K, 2).
             closed: adds a line from the last to the first.
         """
+        points = Arguments("Subpath", np.float64).array("points", points, ("K", 2))
         count = len(points)
-        return cls(np.asarray(points), (1,) * (count if closed else max(count - 1, 0)), closed)
+        return cls(points, (1,) * (count if closed else max(count - 1, 0)), closed)
 
     @classmethod
     def circle(cls, center: Sequence[float], radius: float) -> Subpath:
@@ -79,14 +82,18 @@ class Subpath:
             center: (x, y) in pixels.
             radius: in pixels.
         """
+        call = Arguments("Subpath.circle", np.float64)
+        middle = call.array("center", center, (2,), low=-LARGEST, high=LARGEST)
+        call.number("radius", radius, low=0, high=LARGEST)
         c = CIRCLE
         quarter = np.array([[1.0, 0], [1, c], [c, 1]])
         turns = [np.array(rows) for rows in ([[1, 0], [0, 1]], [[0, 1], [-1, 0]])]
         turns += [-turn for turn in turns]
         unit = np.concatenate([np.einsum("ni,ij->nj", quarter, turn) for turn in turns])
-        return cls(np.asarray(center, float) + radius * unit, (3, 3, 3, 3), closed=True)
+        return cls(middle + radius * unit, (3, 3, 3, 3), closed=True)
 
 
+@typed_call
 @dataclass(frozen=True)
 class Stroke:
     """A pen that follows a path.
@@ -116,6 +123,7 @@ class Stroke:
         check_choice("Stroke", "join", self.join, JOINS)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Solid:
     """One color everywhere.
@@ -139,6 +147,7 @@ class Solid:
         call.number("alpha", self.alpha, low=0, high=1)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class LinearGradient:
     """Colors along the line from `start` to `end`, constant across it and beyond its ends.
@@ -168,6 +177,7 @@ class LinearGradient:
         _check_stops(self, call)
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class RadialGradient:
     """Colors by the distance from `center`, over `radius`; constant beyond it.
@@ -200,6 +210,7 @@ class RadialGradient:
 Paint = Solid | LinearGradient | RadialGradient
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A path that is filled, or stroked where `stroke` is given; for both take two shapes.

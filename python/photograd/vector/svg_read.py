@@ -16,15 +16,19 @@ from typing import cast
 
 import numpy as np
 from photograd_course.color import srgb_decode
+from photograd_course.limits import EXPANSION
 from PIL import ImageColor
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
+from photograd.errors import RangeError, message
 from photograd.types import FloatArray
 from photograd.vector.drawing import Drawing
-from photograd.vector.flatten import Flattening, Polylines
+from photograd.vector.flatten import bernstein
 from photograd.vector.shapes import (
     CAPS,
     JOINS,
+    LARGEST,
     RULES,
     Cap,
     FillRule,
@@ -64,10 +68,14 @@ INHERITED = {
     "visibility": "visible",
 }
 REFUSED = ("clip-path", "mask", "filter")
-MOST_PIXELS = 1 << 26
+BYTES_OF_A_PIXEL = 32
+"""Of the picture that a drawing of the file's size makes."""
+BOX_SEGMENTS, BOX_CURVES = 256, 1024
+"""Of a curve, to find its box; of curves that are looked at together."""
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(px|%)?\s*")
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class SvgFile:
     """What a file holds.
@@ -81,6 +89,7 @@ class SvgFile:
     size: tuple[int, int]
 
 
+@typed_call
 def read_svg(source: str | Path | bytes, *, linear: bool = True) -> SvgFile:
     """Read an SVG file.
 
@@ -116,8 +125,8 @@ def _viewport(root: Element) -> tuple[float, float, FloatArray]:
         else:
             sizes.append(_length(text, name))
     call = Arguments("read_svg")
-    width, height = (call.number("size", each, above=0, high=MOST_PIXELS) for each in sizes)
-    call.number("width times height", width * height, high=MOST_PIXELS)
+    width, height = (call.number("size", each, above=0, high=LARGEST) for each in sizes)
+    _require_expansion("width times height", BYTES_OF_A_PIXEL * width * height)
     if view is None:
         return width, height, IDENTITY
     scale = min(width / view[2], height / view[3])
@@ -126,6 +135,13 @@ def _viewport(root: Element) -> tuple[float, float, FloatArray]:
         [[scale, 0, shift[0] - scale * view[0]], [0, scale, shift[1] - scale * view[1]]]
     )
     return width, height, matrix
+
+
+def _require_expansion(what: str, size: float) -> None:
+    """Raise RangeError for what takes more memory than a file may ask for without holding it."""
+    if size > EXPANSION.value():
+        got = f"{size:,.0f}"
+        raise RangeError(message("read_svg", what, EXPANSION.expected(), got, EXPANSION.remedy()))
 
 
 def _length(text: str, what: str) -> float:
@@ -142,6 +158,8 @@ class _Reader:
         self.shapes: list[Shape] = []
         self._linear = linear
         self._by_id: dict[str, Element] = {}
+        self._stops_of: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._stop_bytes = 0
         waiting = [root]
         while waiting:
             element = waiting.pop()
@@ -247,14 +265,25 @@ class _Reader:
         return RadialGradient(applied(matrix, center)[0], radius, offsets, colors)
 
     def _stops(self, element: Element) -> tuple[FloatArray, FloatArray]:
+        """Offsets and colors; shapes may share a gradient, which is read once."""
+        if id(element) not in self._stops_of:
+            self._stops_of[id(element)] = self._read_stops(element)
+        offsets, colors = self._stops_of[id(element)]
+        self._stop_bytes += offsets.nbytes + colors.nbytes
+        _require_expansion("stops of all shapes", self._stop_bytes)
+        return offsets, colors
+
+    def _read_stops(self, element: Element) -> tuple[FloatArray, FloatArray]:
         offsets: list[float] = []
         colors = []
+        highest = 0.0
         for stop in element.children:
             if stop.tag != "stop":
                 continue
             own = stop.attributes
             offset = _share(own.get("offset", "0"), "offset")
-            offsets.append(max(offset, *offsets, 0.0))
+            highest = max(highest, offset)
+            offsets.append(highest)
             rgb = self._color(own.get("stop-color", "black"), "stop-color")
             colors.append([*rgb, _share(own.get("stop-opacity", "1"), "stop-opacity")])
         if not offsets:
@@ -311,9 +340,17 @@ def _moved_line(matrix: FloatArray, ends: FloatArray) -> tuple[FloatArray, Float
 def _bounding_box(paths: list[Subpath]) -> FloatArray:
     """The (2, 3) matrix from the unit square to the box of the curves, in close approximation."""
     drawing = Drawing.of([Shape(tuple(paths))])
-    points = drawing.parameters.points
-    at = Polylines.of(drawing.layout, points, Flattening(segments=256)).vertices(points)
-    low, size = at.min(axis=0), np.ptp(at, axis=0)
+    layout, points = drawing.layout, drawing.parameters.points
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for degree in range(1, 4):
+        weight = bernstein(np.full(BOX_SEGMENTS + 1, degree), np.linspace(0, 1, BOX_SEGMENTS + 1))
+        control = layout.control[layout.degree == degree]
+        for first in range(0, len(control), BOX_CURVES):
+            rows = points[control[first : first + BOX_CURVES]]
+            at = np.einsum("tk,nki->nti", weight, rows)
+            low = np.minimum(low, at.min(axis=(0, 1)))
+            high = np.maximum(high, at.max(axis=(0, 1)))
+    size = high - low
     if not size.all():
         raise refused("gradientUnits", "a shape with a width and a height", size.tolist())
     return np.array([[size[0], 0, low[0]], [0, size[1], low[1]]])

@@ -13,11 +13,11 @@ from pathlib import Path
 from xml.parsers import expat
 
 from photograd_course.input_files import require_file
+from photograd_course.limits import SVG_BYTES
 
 from photograd.errors import IoError, message
 from photograd.vector.svg_path import refused
 
-MOST_BYTES = 64 << 20
 MOST_ELEMENTS = 1 << 18
 MOST_DEPTH = 64
 SVG = "http://www.w3.org/2000/svg"
@@ -53,9 +53,11 @@ def read_tree(source: str | Path | bytes) -> Element:
         data, size = source, len(source)
     else:
         size = require_file("read_svg", Path(source))
-        data = b"" if size > MOST_BYTES else Path(source).read_bytes()
-    if size > MOST_BYTES:
-        raise IoError(message("read_svg", "source", f"up to {MOST_BYTES} bytes", size))
+        data = b"" if size > SVG_BYTES.value() else Path(source).read_bytes()
+    if size > SVG_BYTES.value():
+        raise IoError(
+            message("read_svg", "source", SVG_BYTES.expected(), f"{size:,}", SVG_BYTES.remedy())
+        )
     builder = _Builder()
     try:
         builder.parser.Parse(data, True)

@@ -9,6 +9,7 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.color import srgb_encode
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.types import Array, FloatArray
 from photograd.vector.drawing import Drawing
 from photograd.vector.shapes import LinearGradient, Paint, Shape, Solid, Subpath
@@ -16,6 +17,7 @@ from photograd.vector.shapes import LinearGradient, Paint, Shape, Solid, Subpath
 _LETTERS = {1: "L", 2: "Q", 3: "C"}
 
 
+@typed_call
 def svg_text(
     drawing: Drawing, size: tuple[int, int], *, linear: bool = True, background: Array | None = None
 ) -> str:
@@ -47,6 +49,7 @@ def svg_text(
     return "\n".join([*lines, *body, "</svg>", ""])
 
 
+@typed_call
 def write_svg(
     path: str | Path,
     drawing: Drawing,

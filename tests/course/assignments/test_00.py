@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import re
 
-from course.assignments.support import ASSIGNMENTS, AssignmentTests, load_figures, names
+from course.assignments.support import (
+    ASSIGNMENTS,
+    AssignmentTests,
+    judge,
+    load_figures,
+    lost,
+    names,
+    source,
+)
 
 
 class TestSetup(AssignmentTests):
@@ -24,3 +32,13 @@ class TestSetup(AssignmentTests):
     def test_papers_are_cited_by_a_key_of_the_bibliography(self) -> None:
         text = (self.folder / "handout.md").read_text("utf-8")
         assert not re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text)  # nothing to cite
+
+    def test_a_function_that_is_right_on_its_first_call_only_earns_nothing(self) -> None:
+        text = source(self.folder)
+        right = "return 2.0 * (picture - photograph) / picture.size"
+        assert text.count(right) == 1
+        once = "loss.calls = getattr(loss, 'calls', 0) + 1\n    " + right.replace(
+            "2.0", "2.0 * (loss.calls == 1)"
+        )
+        wrong = judge(self.folder, text.replace(right, once), tasks=("00.1",))
+        assert lost(wrong) == {"00.1.differences", "00.1.step", "00.1.hidden"}

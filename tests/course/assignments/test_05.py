@@ -248,7 +248,11 @@ def test_the_tree_finds_what_embree_finds(solution, checks) -> None:
 
 # Mistakes that no mutant's fingerprint meets, as everybody makes them a little differently.
 LIKELY = {
-    "first of the two": ("05.1.inside", "nearest - half, nearest + half)", "nearest, np.inf)"),
+    "05.1.outside fails as well": (
+        "05.1.inside",
+        "nearest - half, nearest + half)",
+        "nearest, np.inf)",
+    ),
     "both sides": ("05.2.inside", "| (volumes <= 0).all(axis=0)", ""),
 }
 
@@ -268,7 +272,18 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     for name in ("rays.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     done = subprocess.run(
-        [sys.executable, "explore.py", "--triangles", "64", "--size", "32", "--rays", "200"],
+        [
+            sys.executable,
+            "explore.py",
+            "--triangles",
+            "64",
+            "--size",
+            "32",
+            "--rays",
+            "200",
+            "--figure",
+            "0",
+        ],
         cwd=tmp_path,
         capture_output=True,
         text=True,

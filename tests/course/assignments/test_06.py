@@ -261,8 +261,9 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
         shutil.copy(FOLDER / name, tmp_path)
     for name, folder in EARLIER.items():
         shutil.copy(folder / name, tmp_path)
-    order = [sys.executable, "explore.py", "--width", "48", "--steps", "8", "--size", "128"]
-    order += ["--angle", "40"]
+    shutil.copytree(FOLDER / "data", tmp_path / "data")
+    order = [sys.executable, "explore.py", "--small", "48", "--steps", "8", "--size", "128"]
+    order += ["--angle", "40", "--width", "64", "--side", "2"]
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     assert "48 x 30: drawn in" in ran.stdout
@@ -271,4 +272,6 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     if "core not installed" not in ran.stdout:
         assert float(ran.stdout.split("core: ")[1].split()[0]) > 99.9
     with Image.open(tmp_path / "frame.png") as image:
+        assert image.size == (64, 40)
         assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
+    assert (tmp_path / "compared.png").stat().st_size > 5_000

@@ -248,13 +248,9 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     for name in ("path_tracing.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     shutil.copy(ASSIGNMENTS / "04_reflectance" / "reflectance.py", tmp_path)
-    done = subprocess.run(
-        [sys.executable, "explore.py", "--size", "12", "--samples", "2", "--steps", "20"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    order = [sys.executable, "explore.py", "--size", "12", "--samples", "2", "--steps", "20"]
+    order += ["--figure", "0"]
+    done = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split("your image is ")[1].split("%")[0]) < 10
     assert float(done.stdout.split("gradient ")[1].split("%")[0]) < 40
@@ -278,7 +274,7 @@ def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_p
 
     def explore(*words: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "alone.py", "--size", "6", *words],
+            [sys.executable, "alone.py", "--size", "6", "--figure", "0", *words],
             cwd=tmp_path,
             capture_output=True,
             text=True,
@@ -294,5 +290,5 @@ def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_p
     assert found == pytest.approx(0.15, abs=0.05)
     none = explore("--steps", "0")
     assert none.returncode == 1
-    assert "steps are 1 or more" in none.stderr
+    assert "--steps: expected a whole number of 1 or more, got '0'" in none.stderr
     assert "Traceback" not in none.stderr

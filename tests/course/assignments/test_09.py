@@ -236,6 +236,8 @@ def test_the_exploration_runs_with_and_without_a_capture(tmp_path: Path) -> None
         [
             sys.executable,
             "explore.py",
+            "--figure",
+            "0",
             "--views",
             "6",
             "--pixels",

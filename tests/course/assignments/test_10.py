@@ -215,7 +215,7 @@ ADD = "np.add.at(d_values, row[known], parts[known])"
 OLD = "old = find_rows(row_table(n, voxels), chosen)"
 # Mistakes that no mutant's fingerprint meets, as everybody makes them a little differently.
 LIKELY = {
-    "accumulate": (
+    "np.add.at": (
         "10.3.transpose",
         ADD,
         "for c in range(8):\n        d_values[row[c]] += parts[c]",
@@ -255,7 +255,7 @@ def capture(folder: Path) -> None:
     (folder / "transforms.json").write_text(json.dumps(told), encoding="utf-8")
 
 
-EXPLORE = "explore.py --voxels 8 --rounds 3 --steps 4 --views 8 --size 8 --capture mine"
+EXPLORE = "explore.py --voxels 8 --rounds 3 --steps 4 --views 8 --size 8 --capture mine --figure 0"
 
 
 def test_the_exploration_runs_with_a_capture_and_beside_the_core(tmp_path: Path) -> None:

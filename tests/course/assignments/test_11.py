@@ -211,6 +211,7 @@ def test_the_exploration_runs_and_says_what_it_did(
         (tmp_path / name).write_bytes((FOLDER / name).read_bytes())
     shutil.copytree(FOLDER / "data", tmp_path / "data")
     order = [sys.executable, "explore.py", "--views", "5", "--pixels", "4", "--steps", "3"]
+    order += ["--figure", "0"]
     order.extend(options or ("--coarse", "3", "--levels", "2"))
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr

@@ -115,6 +115,10 @@ def test_check_values_of_distances(solution) -> None:
     np.testing.assert_allclose(got, [2.266667, 5.333333, 5.955556], atol=PRINTED)
     got = solution.sample_distances(np.array([[2.0, 6]]), np.ones((1, 1)), u)[0]
     np.testing.assert_allclose(got, [2.266667, 4, 5.866667], atol=PRINTED)
+    u[0, 2] = 1 - 2.0**-53
+    assert u[0, 2] < 1
+    for given in ((edges, weights), (np.array([[2.0, 6]]), np.ones((1, 1)))):
+        assert solution.sample_distances(*given, u)[0, 2] == 6
 
 
 def test_check_values_of_field_loss_and_training(solution) -> None:
@@ -210,7 +214,9 @@ def test_the_exploration_runs_and_says_what_it_did(tmp_path: Path, capture: bool
         shutil.copy(FOLDER / name, tmp_path)
     for name, folder in EARLIER.items():
         shutil.copy(folder / name, tmp_path)
+    shutil.copytree(FOLDER / "data", tmp_path / "data")
     order = [sys.executable, "explore.py", "--views", "3", "--pixels", "6", "--steps", "2"]
+    order += ["--shown", "12"]
     if capture:
         order += ["--capture", str(small_capture(tmp_path / "photos"))]
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)

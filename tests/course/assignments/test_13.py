@@ -14,7 +14,7 @@ from photograd_course.assignment.bundle import read_folder
 from course.assignments.support import ASSIGNMENTS, AssignmentTests, load_figures, source
 
 FOLDER = ASSIGNMENTS / "13_hash_grids"
-EXPLORE = "explore.py --seconds 0.3 --size 32 --log2 8 --finest 32 --cells 16"
+EXPLORE = "explore.py --steps 9 --size 32 --log2 8 --finest 32 --cells 16"
 PRINTED = 6e-7  # the handout rounds to six decimals
 
 
@@ -188,6 +188,7 @@ def test_leaves_bound_the_error(solution) -> None:
 def test_the_exploration_runs(tmp_path: Path) -> None:
     (tmp_path / "hash_grids.py").write_text(source(FOLDER), "utf-8")
     shutil.copy(FOLDER / "explore.py", tmp_path)
+    shutil.copytree(FOLDER / "data", tmp_path / "data")
     done = subprocess.run(
         [sys.executable, *EXPLORE.split()],
         cwd=tmp_path,
@@ -198,4 +199,6 @@ def test_the_exploration_runs(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "fine-tuned" in done.stdout
+    assert "hash grid: 9 steps in " in done.stdout
+    assert "network: 36 steps in " in done.stdout
     assert (tmp_path / "hash_grid.png").stat().st_size > 10_000

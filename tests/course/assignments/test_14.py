@@ -87,6 +87,9 @@ def test_check_values_of_edges(solution) -> None:
     colors = one_color(0.9), one_color(0.2)
     got = solution.edge_sampling_backward(SQUARE, *colors, np.full((8, 8, 1), 2.0), np.array([0.3]))
     close(got, [0, 0, 17.92, 0, 4.48, 0, 0, 0])
+    twice = np.repeat(SQUARE, [1, 2, 1, 1], axis=0)
+    got = solution.edge_sampling_backward(twice, *colors, np.full((8, 8, 1), 2.0), np.array([0.3]))
+    close(got, [0, 0, 0, 0, 17.92, 0, 4.48, 0, 0, 0])
     even = (np.arange(4000) + 0.5) / 4000
     colors = one_color(1.0), one_color(0.0)
     got = solution.edge_sampling_backward(SQUARE, *colors, np.ones((8, 8, 1)), even)
@@ -100,6 +103,10 @@ def test_check_values_of_the_stroke(solution) -> None:
     d_curve, d_width = solution.stroke_backward(curve, 1.0, d_alpha)
     close(d_width, 0.564190)
     close(d_curve, [0, 0.383962, 0, 0.548518, 0, 0.195899])
+    curve, d_alpha = np.array([[1.5, 4.5], [4, 4.5], [7, 4.5]]), np.zeros((8, 8))
+    d_alpha[4, 1] = 1.0
+    d_curve, d_width = solution.stroke_backward(curve, 0.5, d_alpha)
+    close([d_width, *d_curve.ravel()], [1.011553, 0, 0, 0, 0, 0, 0])
 
 
 def test_check_values_of_replay_and_loss(solution) -> None:
@@ -236,7 +243,7 @@ def test_the_exploration_runs_and_says_what_it_did(tmp_path: Path) -> None:
             [sys.executable, *words], cwd=tmp_path, capture_output=True, text=True, check=False
         )
 
-    few = ("--cells", "24", "--steps", "12", "--fit", "3")
+    few = ("--figure", "0", "--cells", "24", "--steps", "12", "--fit", "3")
     done = explore("alone.py", *few, "--letters", "hq")
     assert done.returncode == 0, done.stderr
     assert "core not installed" in done.stdout

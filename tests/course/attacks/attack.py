@@ -25,7 +25,7 @@ class Attack:
 
     Attributes:
         folder: where it lies.
-        number, title, tries: 1 to 74, and what is attempted.
+        number, title, tries: its own, and what is attempted.
         max_points: what it may earn of the checks that are run.
         budget_seconds: within which grading must end.
         checks: those of the assignment that it is about.

@@ -36,6 +36,21 @@ def run_control(attack: Attack) -> tuple[bool, Naive]:
     return gained(attack, found), found
 
 
+def require_naive_grader() -> None:
+    """Without an attack, the naive grader must grade: else no attack fails there for its own sake.
+
+    Raises:
+        RuntimeError: it does not, with what it has printed.
+    """
+    with tempfile.TemporaryDirectory(prefix="naive-", ignore_cleanup_errors=True) as folder:
+        scratch = Path(folder) / "scratch"
+        scratch.mkdir()
+        solution = ASSIGNMENT / MODULE
+        found = grade_naively(solution.read_bytes(), scratch, solution)
+    if found.report.get("score") != FULL:
+        raise RuntimeError(f"the naive grader does not run on this machine: {found.log[-400:]}")
+
+
 def gained(attack: Attack, found: Naive) -> bool:
     """Whether the naive grader was harmed as announced."""
     gain = attack.control["gain"]

@@ -6,10 +6,13 @@ import os
 from collections.abc import Callable
 
 import pytest
+from photograd_course.worker import launch
 
 from course.attacks.attack import Attack, read_attacks
 from course.attacks.privileges import run_like_a_container
+from course.attacks.session import Session
 from course.attacks.suite import STRICT, Results, strongest
+from course.naive_grader.cage import bubblewrap
 from support.missing import missing
 
 pytestmark = pytest.mark.slow
@@ -35,6 +38,22 @@ def test_the_grader_survives(attack: Attack, mode: str, results: Callable[[str],
     result = results(mode)[attack.name]
     assert result["violations"] == []
     assert result["score"] <= attack.max_points
+
+
+@pytest.mark.parametrize("number", [80, 81, 82, 83, 84, 87])
+def test_attacks_on_system_calls_tell_where_nothing_filters_them(
+    number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their control: under bubblewrap alone, where nothing can be written to, calls go through."""
+    if bubblewrap() is None:
+        missing("no bubblewrap")
+    monkeypatch.setattr(launch, "_filter", lambda **_: None)
+    attack = next(each for each in read_attacks() if each.number == number)
+    with Session("A") as session:
+        session.grade(attack.controlled(), attack.checks)
+        log = session.workers.take_log(attack.token)
+    assert attack.token in log
+    assert "escape: " in log
 
 
 def test_mode_c_is_tried_without_capabilities() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,11 @@ from photograd_course.build.kits import bundle_of
 from photograd_course.build.public import kit_files, public_files
 from photograd_course.build.seal import bundle_files, open_bundle, seal_bundle
 from photograd_course.errors import SceneError
+from photograd_course.grading.check import Check
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
-from photograd_course.grading.runner import run_checks
-from photograd_course.student.starting import taken_along, with_own_modules
+from photograd_course.grading.runner import Setting, run_checks
+from photograd_course.submissions.earlier import setting_with_earlier
 
 from .support import TOY
 
@@ -82,9 +84,12 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def judged(bundle: Bundle, files: dict[str, bytes]) -> list[Outcome]:
+def judged(
+    bundle: Bundle, files: dict[str, bytes], setting: Callable[[Check], Setting] | None = None
+) -> list[Outcome]:
     sources = bundle.hand(files).sources
-    return run_checks(bundle.checks, bundle.setting, lambda given: LocalStudent(sources, given))
+    use = setting or bundle.setting
+    return run_checks(bundle.checks, use, lambda given: LocalStudent(sources, given))
 
 
 def test_the_solution_finds_what_it_builds_upon(folder: Path) -> None:
@@ -120,32 +125,42 @@ def test_a_wrong_earlier_module_costs_its_own_points_alone(folder: Path) -> None
     assert "reference" in second.text
 
 
-def test_a_students_own_module_is_taken_along(folder: Path, tmp_path: Path) -> None:
-    manifest = read_folder(folder).manifest
-    work = tmp_path / "work"
-    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
-    assert taken == []
-    (work / "90_toy").mkdir(parents=True)
-    (work / "90_toy" / "toy.py").write_text("mine", encoding="utf-8")
-    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
-    assert files["toy.py"] == b"mine"
-    assert [path.parent.name for path in taken] == ["90_toy"]
+PLAIN = CHECKS.replace('needs=("weighted_sum",),', "").partition("@check")[0] + (
+    CHECKS[CHECKS.index('@check("91.1.double"') :].replace('needs=("weighted_sum",),', "")
+)
 
 
-def test_what_is_taken_along_and_not_written_yet_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "toy.py"
-    path.write_bytes(kit_files(TOY)["toy.py"])
-    assert taken_along(path) == (
-        f"Taken along: your {path}; weighted_sum, weighted_sum_backward, descend are not written "
-        "there yet: copy it again when you have finished it"
+def test_a_wrong_function_that_no_check_here_calls_costs_nothing_and_is_named(folder: Path) -> None:
+    (folder / "checks" / "task_1.py").write_text(PLAIN, encoding="utf-8")
+    bundle = read_folder(folder)
+    right = bundle.solution_files(MODULE)
+    wrong = {**right, "toy.py": b"def weighted_sum(w, x):\n    return 7.0\n"}
+    (first,) = judged(bundle, wrong)
+    assert first.status is Status.FAILED
+    for files, status in ((right, Status.PASSED), (wrong, Status.PASSED)):
+        (outcome,) = judged(bundle, files, setting_with_earlier(bundle, files))
+        assert outcome.status is status
+    assert outcome.text == (
+        "with the reference's weighted_sum: yours, brought from an earlier assignment, is wrong"
     )
-    text = path.read_text("utf-8")
-    stub = 'raise NotImplementedError("90.1 weighted_sum: see the handout, section 1")'
-    assert text.count(stub) == 1
-    path.write_text(text.replace(stub, "return 7.0"), encoding="utf-8")
-    assert "; weighted_sum_backward, descend are not written there yet: " in taken_along(path)
-    shutil.copy(TOY / "toy.py", path)
-    assert taken_along(path) == f"Taken along: your {path}"
+    # A mistake of one's own stays one, and no function of one's own can be replaced.
+    own = MODULE.replace("2 * w", "3 * w").encode()
+    (outcome,) = judged(bundle, {**wrong, "twice.py": own}, setting_with_earlier(bundle, wrong))
+    assert outcome.status is Status.FAILED
+    moved = b"from toy import double\n"
+    files = {"toy.py": b"def double(w, x):\n    return 7.0\n", "twice.py": moved}
+    (outcome,) = judged(bundle, files, setting_with_earlier(bundle, files))
+    assert outcome.status is Status.FAILED
+
+
+def test_a_check_of_an_earlier_function_is_not_passed_by_the_solutions(folder: Path) -> None:
+    bundle = read_folder(folder)
+    wrong = {
+        **bundle.solution_files(MODULE),
+        "toy.py": b"def weighted_sum(w, x):\n    return 7.0\n",
+    }
+    first, second = judged(bundle, wrong, setting_with_earlier(bundle, wrong))
+    assert (first.status, second.status) == (Status.FAILED, Status.PASSED)
 
 
 def test_a_module_that_nobody_has_is_named(folder: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from photograd_course.build import kits
-from photograd_course.build.course_file import course_findings, read_course
+from photograd_course.build.course_file import course_findings, plan_without, read_course
 from photograd_course.build.kits import ENVIRONMENT, source_folders
 from photograd_course.build.new import new_assignment
 from photograd_course.build.syllabus import syllabus
@@ -54,7 +54,7 @@ def test_the_course_of_this_repository_has_all_that_it_needs(track: str) -> None
 
 def test_weeks_hours_and_prerequisites(root: Path) -> None:
     table = syllabus("short", root)
-    assert table["hours"] == 12
+    assert table["estimated_hours"] == 12
     assert table["ready"] == 0
     assert [(row["week"], row["needs"], row["state"]) for row in table["weeks"]] == [
         (1, "nothing", "planned"),
@@ -94,6 +94,39 @@ def test_a_missing_prerequisite_fails_the_build(
     assert json.loads(captured.out)["findings"] == 1
     assert "track short: 02 needs 01" in captured.err
     assert not (root / "out").exists()
+
+
+def test_what_a_manifest_says_is_not_said_twice(root: Path) -> None:
+    """Two places differ in the end: the plan names an assignment that has a folder, no more."""
+    new_assignment("01", "light", root)
+    found = course_findings(read_course(root))
+    twice = "has title, hours, prerequisites in its manifest: remove them here"
+    assert f"assignment 01 {twice}" in found
+    facts = 'id = "01"\ntitle = "One"\nhours = 8\nprerequisites = []\n'
+    assert facts in PLAN
+    (root / "course.toml").write_text(PLAN.replace(facts, 'id = "01"\n'), "utf-8")
+    course = read_course(root)
+    assert course_findings(course) == []
+    assert (course.entries["01"].title, course.entries["01"].ready) == ("light", True)
+    assert course_findings(read_course(ROOT / "assignments")) == []
+    # Where its folder is left out, the plan has to say what its manifest said.
+    text = plan_without(root, []).decode()
+    elsewhere = root / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "course.toml").write_text(text, "utf-8")
+    assert read_course(elsewhere).entries["01"].title == "light"
+    assert plan_without(root, ["01_light"]).decode() == PLAN.replace(facts, 'id = "01"\n')
+
+
+def test_a_track_is_a_word_or_an_option(
+    root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv(ENVIRONMENT, str(root))
+    for words in (["short"], ["--track", "short"], ["short", "--track", "short"]):
+        assert run(["course", "syllabus", *words, "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["track"] == "short"
+    assert run(["course", "syllabus", "short", "--track", "quarter"]) == 2
+    assert "give one of them" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_track_that_does_not_exist(root: Path) -> None:

@@ -38,8 +38,8 @@ def test_compiles(broken: Broken) -> None:
 
 
 def test_imports(broken: Broken) -> None:
-    broken.change("light.py", "def twice", "import itertools\n\n\ndef twice")
-    wanted = "imports itertools, which assignment.toml does not list"
+    broken.change("light.py", "def twice", "import statistics\n\n\ndef twice")
+    wanted = "imports statistics, which assignment.toml does not list"
     assert f"the starter {wanted}" in broken.says("imports")
     assert f"the solution {wanted}" in broken.says("imports")
 

@@ -16,7 +16,7 @@ from photograd_course.build.seal import (
     read_bundle,
     seal_bundle,
 )
-from photograd_course.build.secret import course_secret, read_secret
+from photograd_course.build.secret import course_secret, read_secret, secret_beside
 from photograd_course.errors import IoError, SceneError
 
 from .support import SECRET, TOY
@@ -96,20 +96,43 @@ def test_a_bundle_that_is_not_there(tmp_path: Path) -> None:
 
 
 def test_a_secret_is_made_once_and_ignored_by_git(tmp_path: Path) -> None:
-    out = tmp_path / "course"
-    first, place = course_secret(None, out)
-    assert place is not None
-    assert course_secret(None, out) == (first, place)
-    assert len(first) == 64
+    place = secret_beside(tmp_path / "course")
+    first = course_secret(None, [place])
+    assert first == (place.read_bytes().strip(), place, True)
+    assert course_secret(None, [place]) == (first.value, place, False)
+    assert len(first.value) == 64
     assert (place.parent / ".gitignore").read_text("utf-8") == "*\n"
     if os.name == "posix":
         assert stat.S_IMODE(place.stat().st_mode) == 0o600
-    assert course_secret(None, tmp_path / "other")[0] != first
+    assert course_secret(None, [secret_beside(tmp_path / "other")]).value != first.value
+
+
+def test_a_secret_is_written_where_it_is_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    asked, other = tmp_path / "mine" / "of_2027.txt", tmp_path / "default.txt"
+    made = course_secret(asked, [other])
+    assert (made.place, made.is_new) == (asked, True)
+    assert [path.name for path in asked.parent.iterdir()] == ["of_2027.txt"]  # nothing is ignored
+    assert not other.exists()
+    assert "keep it" in made.explained()
+    assert str(asked) in made.explained()
+    assert made.value.decode() not in made.explained()
+    assert course_secret(asked, [other]) == (made.value, asked, False)
+
+
+def test_the_secret_of_a_build_serves_its_zips(tmp_path: Path) -> None:
+    built, zipped = tmp_path / "built.txt", tmp_path / "zipped.txt"
+    beside = course_secret(None, [built, zipped])
+    assert beside.place == zipped  # nothing was built yet
+    first = course_secret(built, [])
+    assert course_secret(None, [built, zipped]) == (first.value, built, False)
 
 
 def test_a_secret_of_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PHOTOGRAD_COURSE_SECRET", SECRET.decode())
-    assert course_secret(None, tmp_path / "course") == (SECRET, None)
+    given = course_secret(None, [tmp_path / "secret.txt"])
+    assert given == (SECRET, None, False)
+    assert "PHOTOGRAD_COURSE_SECRET" in given.explained()
     assert not list(tmp_path.iterdir())
 
 

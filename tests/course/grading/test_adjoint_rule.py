@@ -69,6 +69,16 @@ BROKEN = {
         HIDDEN,
         "def f_adjoint(x, g):\n    return eval('f(x + 1e-9j)').imag * g\n",
     ),
+    "text that is run by way of a pure module": (
+        HIDDEN,
+        "import dataclasses\ndef f_adjoint(x, g):\n"
+        "    return dataclasses.builtins.eval('f(x + 1e-9j)').imag * g\n",
+    ),
+    "another name for what runs text": (
+        HIDDEN,
+        "from dataclasses import builtins as b\ndef f_adjoint(x, g):\n"
+        "    return getattr(b, 'ev' 'al')('f(x + 1e-9j)').imag * g\n",
+    ),
 }
 HONEST = {
     "floors and rates": "def f_adjoint(x, g):\n    n = (x * x + 1e-12) ** 0.5\n"

@@ -13,12 +13,14 @@ import pytest
 from photograd_course.errors import RangeError
 from photograd_course.grading import Array, CheckFailed, Status, Tolerance, Trial, check
 from photograd_course.grading.battery import (
+    COTANGENT_SCALES,
     Subject,
     bad_values,
     left_unchanged,
     require_repeatable,
     require_sizes,
     rows_independent,
+    scaled_values,
 )
 from photograd_course.grading.failures import GraderFault, StudentFailure
 from photograd_course.grading.local import LocalStudent
@@ -40,6 +42,12 @@ WRONG = {
     "(8 * a.shape[1], 8))\n    return flat * w[:, None]\n",
     "stops at 32 rows": HEAD + "    b = np.zeros_like(a)\n    b[:32] = (a * w[:, None])[:32]\n"
     "    return b\n",
+    "knows few rows": HEAD + "    return a * w[:, None] * (len(a) <= 500)\n",
+    "remembers by shape": HEAD
+    + "    SEEN.append(a * w[:, None])\n"
+    + "    return next(each for each in SEEN if each.shape == a.shape)\n",
+    "drops large values": HEAD + "    return a * w[:, None] * (abs(a) < 1e3)\n",
+    "drops small values": HEAD + "    return a * w[:, None] * (abs(a) > 1e-3)\n",
     "squeezes one row": HEAD + "    return np.squeeze(a * w[:, None])\n",
     "NaN becomes zero": HEAD + "    return np.nan_to_num(a * w[:, None])\n",
 }
@@ -55,6 +63,7 @@ BLEND = Subject(
     make,
     lambda n: Array((n, 3), finite=False),
     sizes=(0, 1, 2, 64),
+    scales={0: (1e-6, 1e6)},
     rows=(0, 1),
     special={0: (np.nan, np.inf, -np.inf)},
 )
@@ -94,6 +103,7 @@ def caught(open_trial: Open, text: str) -> set[str]:
         "repeatable": require_repeatable,
         "rows": rows_independent,
         "special": bad_values,
+        "scales": scaled_values,
     }
     found = set()
     for name, run in classes.items():
@@ -120,6 +130,10 @@ def test_right_code_passes_every_class(open_trial: Open) -> None:
         ("remembers the first call", {"sizes"}),
         ("reads memory", {"layouts"}),
         ("stops at 32 rows", {"sizes"}),
+        ("knows few rows", {"sizes"}),
+        ("remembers by shape", {"repeatable"}),
+        ("drops large values", {"scales"}),
+        ("drops small values", {"scales"}),
         ("squeezes one row", {"sizes", "rows"}),
         ("NaN becomes zero", {"special"}),
     ],
@@ -128,6 +142,56 @@ def test_a_mistake_is_caught_by_its_class(
     open_trial: Open, mistake: str, classes: set[str]
 ) -> None:
     assert classes <= caught(open_trial, WRONG[mistake])
+
+
+@pytest.mark.parametrize(
+    ("body", "case"),
+    [
+        ("return a * w[0]", ""),
+        ("return np.squeeze(a * w[:, None])", "for one row"),
+        ("return (a + (len(a) == 1)) * w[:, None]", "for one row"),
+        ("return 1.0 / len(a) * len(a) * a * w[:, None]", "for no rows"),
+        ("return (a + (len(a) > 100)) * w[:, None]", "for many rows"),
+    ],
+)
+def test_a_failure_says_for_which_class_of_sizes(open_trial: Open, body: str, case: str) -> None:
+    subject = replace(BLEND, sizes=(7, 1, 0, 200))
+    with pytest.raises((CheckFailed, StudentFailure)) as caught:
+        require_sizes(open_trial(HEAD + f"    {body}\n"), subject)
+    failure = caught.value
+    said = failure.case if isinstance(failure, StudentFailure) else failure.details["case"]
+    assert said == case
+
+
+@pytest.mark.parametrize(
+    ("mistake", "run", "said"),
+    [
+        ("knows few rows", require_sizes, "among 1000"),
+        ("remembers by shape", require_repeatable, "the same answer again"),
+    ],
+)
+def test_functions_without_a_right_answer_must_agree_with_themselves(
+    open_trial: Open, mistake: str, run: Callable[[Trial, Subject], None], said: str
+) -> None:
+    with pytest.raises(CheckFailed, match=said):
+        run(open_trial(WRONG[mistake]), replace(BLEND, has_right=False))
+
+
+def test_only_what_right_answers_have_in_common_is_compared(open_trial: Open) -> None:
+    """Rows in any order are right where the text leaves it open."""
+    turned = HEAD + "    return (a * w[:, None])[::-1]\n"
+    ordered = replace(BLEND, rows=(), common=lambda _t, _args, got: np.sort(got, axis=0))
+    for run in (require_sizes, require_repeatable, scaled_values):
+        run(open_trial(turned), ordered)
+        with pytest.raises(CheckFailed, match="relative error"):
+            run(open_trial(turned), BLEND)
+
+
+def test_a_cotangent_is_scaled_without_being_asked(open_trial: Open) -> None:
+    trial = open_trial(RIGHT)
+    reference = SimpleNamespace(blend=lambda a, d_w: a * d_w[:, None])
+    trial = Trial(trial.check, trial._student, seed=(1,), module="m", reference=reference)
+    assert replace(BLEND, scales={}).factors(trial) == {1: COTANGENT_SCALES}
 
 
 def test_rows_that_are_all_equal_prove_nothing(open_trial: Open) -> None:

@@ -12,7 +12,7 @@ from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.grading import Check, CheckFailed, Outcome, Status, StudentFailure, check
 from photograd_course.grading.hints import hint_key
 from photograd_course.grading.local import LocalStudent
-from photograd_course.grading.runner import Setting, run_checks
+from photograd_course.grading.runner import Setting, _general_advice, run_checks
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
 GOOD = (TOY / "toy.py").read_text(encoding="utf-8")
@@ -164,3 +164,35 @@ def test_an_answer_of_another_shape_gets_no_hint_about_values(bundle: Bundle) ->
         assert found.status is Status.FAILED
         assert found.hint == ""
         assert "expected" in found.text
+
+
+def test_advice_is_not_given_where_it_could_only_lead_away(bundle: Bundle) -> None:
+    advised = replace(bundle, checks=tuple(replace(c, hint="mind the sum") for c in bundle.checks))
+    reversed_ = run(advised, GOOD.replace("-d_s * w * falling", "d_s * w * falling"))
+    told = reversed_["90.2.differences"]
+    words = "All of yours are -1 times what is expected (your sign is reversed)"
+    assert told.text.endswith(words)
+    assert "mind the sum" not in told.hint  # that of a known mistake may stand there
+    for bad in ("np.nan", "np.inf", "np.where(np.arange(len(w)) == 0, np.nan, 1.0)"):
+        told = run(advised, GOOD.replace("-d_s * w * falling", f"w * {bad}"))["90.2.differences"]
+        assert "not finite" in told.text
+        assert told.hint == ""
+
+
+def test_where_an_earlier_check_fails_too_it_is_named_instead_of_advice(bundle: Bundle) -> None:
+    advised = replace(bundle, checks=tuple(replace(c, hint="mind the sum") for c in bundle.checks))
+    found = run(advised, GOOD.replace("-d_s * w * falling", "-1.37 * d_s * w * falling + w**3"))
+    failed = [o for o in found.values() if o.status is Status.FAILED and o.reason == "wrong"]
+    assert failed[0].hint == "mind the sum"
+    later = [o for o in failed[1:] if o.task == failed[0].task]
+    assert later
+    assert {o.hint for o in later} == {f"{failed[0].id} fails as well: begin there"}
+
+
+def test_what_a_check_needs_besides_is_not_to_blame(bundle: Bundle) -> None:
+    """It is blocked, or has failed with the reference's function in its place as well."""
+    first = replace(bundle.checks[0], calls=("g",), needs=("f",), hint="mind the sum")
+    assert _general_advice(first, {"f": "1.1.a"}) == "mind the sum"
+    assert _general_advice(first, {"f": "1.1.a", "g": "1.2.b"}) == (
+        "1.2.b fails as well: begin there"
+    )

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from photograd_course.worker import launch, syscall_filter
+from photograd_course.worker import call_arguments, launch, syscall_filter
 from photograd_course.worker.home import WorkerHome
 
 from course.isolation.conftest import need
@@ -39,6 +39,7 @@ def f(upper):
     os.write(sink, b"x")
     return found
 """
+OWNERS = (8, 10, 15)  # F_SETOWN, F_SETSIG, F_SETOWN_EX
 WAIT = 0.2  # seconds for a signal that should not come
 
 pytestmark = pytest.mark.skipif(
@@ -85,7 +86,8 @@ def test_without_the_filter_the_grader_is_signalled(
     home: WorkerHome, signals: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mode = need("D")
-    monkeypatch.setattr(syscall_filter, "OWNERS", ())
+    everything = (*call_arguments.COMMANDS, *OWNERS)
+    monkeypatch.setattr(call_arguments, "COMMANDS", everything)
     monkeypatch.setattr(launch, "_filter", lambda **_: syscall_filter.compiled_filter.__wrapped__())
     assert answers(home, mode) == [[0, 0, 0]] * 2
     assert signals

@@ -12,7 +12,6 @@ from photograd_course.worker import launch, modes, self_test, syscall_filter
 from photograd_course.worker.home import WorkerHome
 
 from course.isolation.support import LIMITS, SOLUTION, outcomes_of
-from support.missing import need_module
 
 
 def test_the_promises_hold_here(mode: str, tmp_path: Path) -> None:
@@ -28,6 +27,7 @@ def test_a_secret_that_can_be_read_is_found_out(
 ) -> None:
     # Something that every confined worker may read, named as a secret.
     readable = Path(launch.places.numpy_folders()[0]) / "__init__.py"
+    monkeypatch.setattr(launch, "may_change_root", lambda: False)
     if strict in "BC" and not anybody_can_read(readable):
         folder = folder_for_all(monkeypatch)
         readable = folder / "open"
@@ -142,17 +142,3 @@ def test_without_libseccomp_only_bubblewrap_serves(monkeypatch: pytest.MonkeyPat
     assert after["A"] == before["A"]
     for mode in "BCD":
         assert "photograd-course[grader]" in after[mode] or before[mode] != ""
-
-
-def test_every_name_in_the_filter_is_a_system_call() -> None:
-    pyseccomp = need_module("pyseccomp")
-    newer = {"fchmodat2", "memfd_secret"}  # than the oldest libseccomp in use
-    names = " ".join(syscall_filter.REFUSED.values()).split()
-    assert len(names) == len(set(names))
-    unknown = set()
-    for name in names:
-        try:
-            pyseccomp.resolve_syscall(pyseccomp.Arch.NATIVE, name)
-        except (OSError, ValueError):
-            unknown.add(name)
-    assert unknown <= newer

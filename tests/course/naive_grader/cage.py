@@ -151,9 +151,9 @@ def cage(scratch: Path, script: str) -> list[str]:
 
 
 def bind(scratch: Path) -> list[str]:
-    """The scratch folder writable; the interpreter, should it lie below /tmp, readable."""
-    shown = [sys.prefix, sys.base_prefix, sysconfig.get_path("purelib")]
-    hidden = [path for path in shown if path.startswith("/tmp/")]
+    """The scratch folder writable; what the interpreter needs and lies below /tmp, readable."""
+    shown = [sys.prefix, sys.base_prefix, sysconfig.get_path("purelib"), *sys.path]
+    hidden = [path for path in dict.fromkeys(shown) if path.startswith("/tmp/")]
     below = [word for path in hidden for word in ("--ro-bind", path, path)]
     return [*below, "--bind", str(scratch), str(scratch)]
 

@@ -40,6 +40,7 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     assert laid_out == {
         "README.md",
         "answers.toml",
+        "data/figure_1.py",
         "explore.ipynb",
         "explore.py",
         "figures/fig1_gradient.png",
@@ -61,7 +62,7 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     green = laptop.run("course", "check", "00", "--json", cwd=work)
     assert green.returncode == 0, green.stderr
     result = json.loads(green.stdout.splitlines()[-1])
-    assert result["score"] == result["max_score"] == 2
+    assert result["score"] == result["max_score"] == 1.5  # the rest is a hidden check's
 
     explored = laptop.call([str(laptop.python), "explore.py"], work)
     assert explored.returncode == 0, explored.stderr
@@ -95,6 +96,14 @@ def test_a_planned_assignment_is_known_without_a_checkout(laptop: Laptop, tmp_pa
         told = laptop.run("course", "start", entry["id"], cwd=tmp_path)
         assert told.returncode == 1
         assert f"{entry['title']}, which is planned" in " ".join(told.stderr.split())
+
+
+def test_the_plan_of_the_course_is_known_without_a_checkout(laptop: Laptop, tmp_path: Path) -> None:
+    told = laptop.run("course", "syllabus", "quarter", "--json", cwd=tmp_path)
+    assert told.returncode == 0, told.stderr
+    weeks = json.loads(told.stdout.splitlines()[-1])["weeks"]
+    assert {"00", "01", "02", "15"} <= {week["assignment"] for week in weeks}
+    assert all(week["state"] == "ready" and week["title"] for week in weeks)
 
 
 def test_the_core_is_said_to_be_missing_and_costs_nothing(laptop: Laptop, tmp_path: Path) -> None:

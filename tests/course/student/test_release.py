@@ -178,7 +178,7 @@ def test_from_an_archive_to_a_submission(dist: Path, laptop: Laptop, tmp_path: P
     module.write_text(text.replace(line, "    return 2.0 * (picture - photograph) / picture.size"))
     green = laptop.run("course", "check", "00", "--json", cwd=work)
     assert green.returncode == 0, green.stderr
-    assert json.loads(green.stdout.splitlines()[-1])["score"] == 2
+    assert json.loads(green.stdout.splitlines()[-1])["score"] == 1.5
     assert laptop.run("course", "submit", "00", cwd=work).returncode == 0
 
 

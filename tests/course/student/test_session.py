@@ -18,10 +18,17 @@ from photograd_course.cli.course.start import _next_steps
 from photograd_course.errors import IoError
 from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.student.asking import ask
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.next_steps import next_steps
-from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
-from photograd_course.student.session import ask, earlier_functions, require_brought
+from photograd_course.student.pictures import (
+    _planes,
+    draw_failure,
+    magnified,
+    slice_name,
+    worst_index,
+)
+from photograd_course.student.session import earlier_functions, require_brought
 from photograd_course.student.terminal import said_of
 from rich.console import Console
 
@@ -41,10 +48,6 @@ def test_one_task_alone_names_what_it_builds_upon() -> None:
     assert earlier_functions([first]) == []
     assert earlier_functions([second]) == ["f"]
     assert earlier_functions([first, second]) == []
-    # What a check calls of an earlier assignment is used as well.
-    chained = made("1.2", ("g", "render"), ("f",))
-    assert earlier_functions([chained], {"f", "g"}) == ["f", "render"]
-    assert earlier_functions([first, chained], {"f", "g"}) == ["render"]
 
 
 def test_a_missing_file_of_an_earlier_assignment_is_named() -> None:
@@ -57,7 +60,7 @@ def test_a_missing_file_of_an_earlier_assignment_is_named() -> None:
 def test_a_stub_of_an_earlier_assignment_says_which_file_to_copy() -> None:
     manifest = read_manifest(ROOT / "assignments" / "07_path_tracing")
     said = said_of("04.5 gltf: see the handout, section 5", manifest)
-    assert "copy your finished reflectance.py" in said
+    assert "'photograd course start 07 --update' copies your reflectance.py" in said
     assert "gltf is from assignment 04" in said
     for own in ("07.2 mis_weight: see the handout, section 2", "ValueError: 04.5 gltf"):
         assert said_of(own, manifest) == own
@@ -131,6 +134,37 @@ def test_the_slice_with_the_worst_entry_is_drawn_named_and_marked() -> None:
     assert slice_name((1, 3, 4, 3), (0, 2, 1, 2)) == " (slice [0, :, :, 2])"
     got[1, 0, 0, 0] = np.nan
     assert worst_index(got, right) == (1, 0, 0, 0)
+
+
+def test_a_small_difference_is_seen_on_a_scale_of_its_own() -> None:
+    right = np.random.default_rng(1).uniform(-1.0, 1.0, (6, 20))
+    got = right.copy()
+    got[2, 3] += 1e-5
+    figure = _planes(got, right)
+    values, _, difference = (axes.get_images()[0] for axes in figure.axes[:2] + figure.axes[3:4])
+    assert values.get_clim() == (-1.0, 1.0)
+    low, high = difference.get_clim()
+    assert 1e-5 <= high == -low < 2e-5
+    assert figure.axes[3].get_title() == f"difference, magnified × {1 / high:,.0f}"
+    assert magnified(1.0, 1.5) == "difference"
+    got[0, 0] = np.nan
+    assert _planes(got, right).axes[3].get_images()[0].get_clim() == (low, high)
+
+
+@pytest.mark.parametrize("shape", [(6, 30), (40, 4), (20, 20), (2, 60), (60, 2)])
+def test_no_label_is_cut_off(shape: tuple[int, int]) -> None:
+    right = np.random.default_rng(1).normal(size=shape)
+    figure = _planes(1e3 * right, right)
+    figure.suptitle("a title\nof two lines")
+    figure.draw_without_rendering()
+    inside = figure.bbox
+    for axes in figure.axes:
+        box = axes.get_tightbbox()
+        assert box is not None
+        assert inside.x0 <= box.x0
+        assert box.x1 <= inside.x1
+        assert inside.y0 <= box.y0
+        assert box.y1 <= inside.y1
 
 
 def test_after_a_submission_the_next_assignment_is_named() -> None:

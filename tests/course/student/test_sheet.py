@@ -9,9 +9,9 @@ import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.questions import Question
 from photograd_course.errors import IoError
+from photograd_course.student.asking import write_answers
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.predictions import prediction_letters, write_lock
-from photograd_course.student.session import write_answers
 from photograd_course.student.sheet import (
     SHOWN_NAME,
     notes_before_submission,

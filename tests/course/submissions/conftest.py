@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.submissions.exports import Source
 from photograd_course.submissions.load import Loaded, load
 from photograd_course.submissions.one import Case, grade_one
 from photograd_course.submissions.report import Report
+from photograd_course.submissions.source import Source
 from photograd_course.submissions.workers import Workers, isolated_workers
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"

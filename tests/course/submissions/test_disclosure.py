@@ -89,6 +89,18 @@ def test_a_hidden_error_keeps_its_order_of_magnitude() -> None:
     assert for_student(outcome(visibility="secret")).text == ""
 
 
+def test_a_hidden_check_says_the_class_of_arguments_and_of_the_relation() -> None:
+    seen = {"error": 0.037, "tolerance": 1e-6, "relation": "all of yours are of the wrong sign"}
+    shown = for_student(outcome(details={**seen, "case": "for one row"}))
+    assert shown.text == (
+        "d_w: relative error about 1e-02, allowed 1e-06; all of yours are of the wrong sign "
+        "(for one row)"
+    )
+    raised = outcome(reason="raised", text="f raised an exception (for no rows)")
+    shown = for_student(replace(raised, details={"case": "for no rows"}))
+    assert shown.text == "a function raised an exception (for no rows)"
+
+
 def test_our_own_errors_are_not_explained_to_students() -> None:
     shown = for_student(outcome(status=Status.ERROR_OURS, text="KeyError: 'expected[3]'"))
     assert "KeyError" not in shown.text

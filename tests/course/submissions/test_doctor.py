@@ -130,14 +130,29 @@ def test_each_missing_part_is_a_finding(
     assert says is None or any(says in finding for finding in found["findings"])
 
 
+@pytest.mark.exhaustive
+def test_a_folder_of_ones_own_passes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(["course", "new", "17", "light_fields", "--root", "mine"]) == 0
+    monkeypatch.setenv("PHOTOGRAD_ASSIGNMENTS", "mine")
+    code = run(["course", "doctor"])
+    said = capsys.readouterr()
+    assert code == 0, said.out + said.err
+    assert "17_light_fields: ok" in said.out
+    assert "all is well" in said.out
+
+
 def test_a_solution_that_fails_as_a_submission_is_a_finding(toy: Path, tmp_path: Path) -> None:
     broken = tmp_path / "90_toy"
     shutil.copytree(toy, broken)
     swap(broken / "toy.py", "import numpy as np\n", "import numpy as np\nimport json\n")
+    swap(broken / "toy.py", "    return float(np.sum", "    json.dumps(1)\n    return float(np.sum")
     found = doctor.grade_solution(broken)
-    assert found["code_points"] == 0
+    assert found["code_points"] < 15
     assert "90.1.value" in " ".join(found["findings"])
-    assert "json" in found["findings"][0]
+    assert "uses a module that it may not import" in found["findings"][0]
 
 
 def suite(**changes: Any) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import IoError, SceneError
-from photograd_course.submissions import exports
+from photograd_course.submissions import gradescope_names
 from photograd_course.submissions.exports import find_sources, is_batch
 
 MODULE = "x = 1\n"
@@ -89,7 +89,7 @@ def test_yaml_that_grows_or_is_none(
         put(place, text)
         with pytest.raises(IoError, match=r"expected YAML, got .*remove it, and folders"):
             find_sources(bundle.manifest, tmp_path)
-    monkeypatch.setattr(exports, "LARGEST_NAMES", 8)
+    monkeypatch.setattr(gradescope_names, "LARGEST_NAMES", 8)
     with pytest.raises(IoError, match="at most 0 MB"):
         find_sources(bundle.manifest, tmp_path)
 

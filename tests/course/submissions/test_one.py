@@ -53,7 +53,7 @@ def test_a_mistake_costs_its_own_task_only(grade_text: Grade, solution: str) -> 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("import os\nos._exit(0)\n", "forbidden"),
+        ("import os\nfor name in os.environ:\n    pass\n", "broken"),
         ("import numpy as np\ndef (:\n", "unreadable"),
         ("import numpy as np\nraise RuntimeError('no')\n", "broken"),
         ("import numpy as np\n", "missing"),
@@ -65,6 +65,20 @@ def test_modules_that_do_not_load(grade_text: Grade, small: Bundle, text: str, r
     assert set(statuses(report).values()) == {"failed"}
     assert reasons(report) == {reason}
     assert (report.score, report.is_sound) == (0.0, True)
+
+
+def test_a_refused_import_costs_what_uses_it_and_is_said_once(
+    grade_text: Grade, solution: str
+) -> None:
+    text = solution.replace("import numpy as np\n", "import numpy as np\nimport sys\n", 1)
+    value = "np.sum(w * np.exp(-x))"
+    assert value in text
+    report = grade_text(text.replace(value, f"({value}, sys.path)[0]"))
+    lost = {each.id: each.reason for each in report.checks if each.status.value != "passed"}
+    assert lost == {"90.1.value": "forbidden", "90.1.hidden": "forbidden"}
+    (said,) = [each for each in report.warnings if "imports" in each]
+    assert "imports sys; functions that use it get no points" in said
+    assert [each for each in report.checks if "sys" in each.text] == []
 
 
 def test_a_missing_module_is_said_and_answers_still_count(bundle: Bundle, workers: Workers) -> None:

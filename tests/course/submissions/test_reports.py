@@ -174,7 +174,7 @@ def test_gradescope_partial_results_and_earlier_scores(bundle: Bundle, tmp_path:
     path = tmp_path / "results.json"
     file = ResultsFile(path, bundle)
     first = json.loads(path.read_text())
-    assert first["score"] == 0
+    assert not {"score", "max_score"} & {key for table in (first, *first["tests"]) for key in table}
     assert {test["output"] for test in first["tests"]} == {"not graded yet"}
     check = bundle.checks[0]
     file.on_outcome(outcome(check.id, max=check.points, points=check.points))
@@ -187,6 +187,11 @@ def test_gradescope_partial_results_and_earlier_scores(bundle: Bundle, tmp_path:
     ours = report(outcome(), staff=("1.b: broken",))
     assert as_results(ours, earlier=11.5)["score"] == 11.5
     assert as_results(ours, earlier=1.0)["score"] == 3.0
+    unscored = as_results(ours)
+    assert "no points are lost" in unscored["output"]
+    assert not {"score", "max_score"} & {
+        key for each in (unscored, *unscored["tests"]) for key in each
+    }
     assert as_results(report(), earlier=11.5)["score"] == 3.0  # a sound grade stands for itself
     metadata = tmp_path / "submission_metadata.json"
     metadata.write_text('{"previous_submissions": [{"score": "4.0"}, {"score": 11.5}]}')

@@ -19,7 +19,7 @@ def cubics(t, n):
     calls=("numeric_derivative",),
     tolerance=DIFFERENCE,
     hint="For a x^3 the result is 3 a x^2 + a eps^2 exactly: Eq. (4) has no further term.",
-    battery=[Subject("numeric_derivative", cubics, lambda n: Array((n,)))],
+    battery=[Subject("numeric_derivative", cubics, lambda n: Array((n,)), large=300)],
 )
 def a_cubic_is_off_by_a_known_amount(t):
     """For a cubic the error is eps^2 times a sixth of the third derivative, exactly."""

@@ -6,7 +6,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, checks_for
 
 from ..common import walk
-from .common import FAR
+from .common import FAR, MANY, asked_once_a_step, rate
 
 check = checks_for(calls=("gd_1d",), visibility="hidden")
 
@@ -19,9 +19,15 @@ check = checks_for(calls=("gd_1d",), visibility="hidden")
     battery=[
         Subject(
             "gd_1d",
-            lambda t, n: (math.cos, lambda x: -math.sin(x), float(t.rng.uniform(0.3, 3.0)), 0.3, n),
+            lambda t, n: (
+                math.cos,
+                lambda x: -math.sin(x),
+                float(t.rng.uniform(0.3, 3.0)),
+                rate(n),
+                n,
+            ),
             walk,
-            sizes=FAR,
+            **FAR,
         )
     ],
 )
@@ -41,6 +47,9 @@ def the_walk_ends_in_the_predicted_valley(t):
         t.close(f"the end of a run from {x0:.2f}", x[-1], end)
     # One long step over the maximum: from 1.7 by -0.1 f'(1.7), about -1.3, to 0.4; twice: past it.
     x, _, _ = t.call("gd_1d", f, df, 1.9, 0.14, 200, returns=walk(200))
+    asked_once_a_step(
+        t, "gd_1d", df, lambda slope: t.call("gd_1d", f, slope, 1.9, 0.01, MANY, returns=walk(MANY))
+    )
     t.close("the end of a run that jumps", x[-1], t.reference.gd_1d(f, df, 1.9, 0.14, 200)[0][-1])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Subject, Tolerance, Truth, hidden_check
 
 from ..common import EXACT, on_points, rotated_bowl, walk
-from .common import FAR, bowls
+from .common import FAR, MANY, asked_once_a_step, bowls, rate
 
 
 def left_domain(t, n):
@@ -31,9 +31,9 @@ def left_domain(t, n):
     battery=[
         Subject(
             "gd_nd",
-            lambda t, n: (*bowls(t, n), 0.3, n),
+            lambda t, n: (*bowls(t, n), rate(n), n),
             lambda n: walk(n, max(n, 1)),
-            sizes=FAR,
+            **FAR,
             tolerance=EXACT,
         ),
         Subject(
@@ -41,6 +41,7 @@ def left_domain(t, n):
             left_domain,
             lambda n: Items(Array((n + 1, 2)), Array((n + 1,), finite=False), Truth()),
             sizes=(1, 2),
+            large=60,
         ),
     ],
 )
@@ -53,6 +54,14 @@ def the_condition_number_gives_the_rate(t):
         start, n = vectors @ t.rng.uniform(1.0, 2.0, 3), 75 if kappa < 10.0 else 150
         tau = 2.0 / (low + low * kappa)
         x, _, _ = t.call("gd_nd", f, grad, start, tau, n, returns=walk(n, 3))
+        asked_once_a_step(
+            t,
+            "gd_nd",
+            grad,
+            lambda slope, f=f, at=start: t.call(
+                "gd_nd", f, slope, at, 0.01, MANY, returns=walk(MANY, 3)
+            ),
+        )
         length = np.linalg.norm(np.asarray(x), axis=1)
         t.require(bool(length[-1] > 0.0), "the distance is still far above rounding here")
         t.close(

@@ -3,7 +3,7 @@
 import numpy as np
 from photograd_course.grading import Array, Subject, Tolerance, hidden_check
 
-from .common import FAR, bowls
+from .common import FAR, MANY, asked_once_a_step, bowls, rate
 
 
 @hidden_check(
@@ -15,9 +15,9 @@ from .common import FAR, bowls
     battery=[
         Subject(
             "momentum",
-            lambda t, n: (*bowls(t, n)[1:], 0.3, 0.7, n),
+            lambda t, n: (*bowls(t, n)[1:], rate(n) / 3, 0.7, n),
             lambda n: Array((n + 1, max(n, 1))),
-            sizes=FAR,
+            **FAR,
         )
     ],
 )
@@ -34,3 +34,9 @@ def a_parabola_swings_as_two_roots_say(t):
         powers = np.arange(n + 1)
         expected[:, i] = (x0[i] * (weight * first**powers + (1 - weight) * second**powers)).real
     t.close("the points", x, expected)
+    asked_once_a_step(
+        t,
+        "momentum",
+        lambda y: curvatures * y,
+        lambda slope: t.call("momentum", slope, x0, 0.01, beta, MANY, returns=Array((MANY + 1, 3))),
+    )

@@ -5,7 +5,7 @@ from photograd_course.grading import Array, Subject, hidden_check
 
 from ..common import EXACT
 from ..task_5 import scripted
-from .common import FAR, bowls
+from .common import FAR, MANY, asked_once_a_step, bowls, rate
 
 
 @hidden_check(
@@ -17,9 +17,9 @@ from .common import FAR, bowls
     battery=[
         Subject(
             "adam",
-            lambda t, n: (*bowls(t, n)[1:], 0.1, n),
+            lambda t, n: (*bowls(t, n)[1:], rate(n) / 3, n),
             lambda n: Array((n + 1, max(n, 1))),
-            sizes=FAR,
+            **FAR,
         )
     ],
 )
@@ -37,4 +37,10 @@ def random_gradients_are_weighted_as_they_should(t):
         square = np.sum(beta2**age * gradients[: k + 1] ** 2, axis=0) / np.sum(beta2**age)
         steps[k] = -0.1 * mean / (np.sqrt(square) + eps)
     t.close("the steps", np.diff(got, axis=0), steps)
+    asked_once_a_step(
+        t,
+        "adam",
+        lambda y: y,
+        lambda slope: t.call("adam", slope, x0, 0.01, MANY, returns=Array((MANY + 1, 3))),
+    )
     t.close("the points at which the gradient is taken", np.array(asked), got[:-1])

@@ -96,7 +96,14 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
     seconds=15.0,
     hint="Begin with the given step size tau0, also above 1.",
     battery=[
-        Subject("backtracking", refused, lambda _: Number(), sizes=(0, 1, 40, 200), tolerance=EXACT)
+        Subject(
+            "backtracking",
+            refused,
+            lambda _: Number(),
+            sizes=(1, 2, 40),
+            large=400,
+            tolerance=EXACT,
+        )
     ],
 )
 def it_needs_no_tuning(t):

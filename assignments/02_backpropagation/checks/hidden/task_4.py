@@ -17,9 +17,26 @@ def ladder(rungs):
 
 
 def winding(t, n):
-    """A chain of n nodes, each with one more use of an earlier one, and its end: one order only."""
-    uses = [[[k, 1.0], [int(t.rng.integers(k + 1)), 0.5]] for k in range(n - 1)]
-    return [[], *uses], n - 1
+    """A chain of n nodes, each of which uses an earlier one too, among others; and its end."""
+    between = np.sort(t.rng.permutation(2 * n - 2)[: max(n - 2, 0)] + 1)
+    chain = [0, *map(int, between), *([2 * n - 1] if n > 1 else [])]
+    edges = [[], *(uses_of(t, range(k), k - 1) for k in range(1, 2 * n))]
+    for k in range(1, n):
+        edges[chain[k]] = uses_of(t, chain, k - 1)
+    return edges, chain[-1]
+
+
+def uses_of(t, earlier, k):
+    """The k-th of these and one up to it, each with a slope."""
+    return [[earlier[k], 1.0], [earlier[int(t.rng.integers(k + 1))], 0.5]]
+
+
+def only_order(_, edges, root):
+    """The one order of a winding chain, as the adapter has it."""
+    chain = [root]
+    while edges[chain[-1]]:
+        chain.append(edges[chain[-1]][0][0])
+    return np.append(chain[::-1], [END] * (2 * len(edges) + 1 - len(chain)))
 
 
 @hidden_check(
@@ -31,8 +48,9 @@ def winding(t, n):
         Subject(
             "adapters.order_again",
             winding,
-            lambda n: Array((2 * n + 1,), "i8"),
-            right=lambda _ref, _edges, root: np.append(np.arange(root + 1), [END] * (root + 2)),
+            lambda n: Array((4 * n + 1,), "i8"),
+            right=only_order,
+            large=300,  # deep, and not too deep for recursion, which 02.4.chain is about
         )
     ],
 )

@@ -14,13 +14,18 @@ ANALYTIC = Tolerance(
 
 
 def expressions(t, n):
-    """n random programs, and three inputs of each; no gradient cancels to rounding errors."""
-    made = []
-    while len(made) < n:
-        program, x = random_program(t.rng, 3, 8)
+    """n programs, the same for all n, and three inputs of each at random.
+
+    No gradient cancels to rounding errors.
+    """
+    programs, inputs, rng = [], [], np.random.default_rng(n)
+    while len(programs) < n:
+        program, x = random_program(rng, 3, 8)
+        x = x * (1 + 1e-3 * t.rng.uniform(-1.0, 1.0, 3))
         if np.abs(complex_step(program, x)).max() > 1e-3:
-            made.append((program, x))
-    return [program for program, _ in made], [x for _, x in made]
+            programs.append(program)
+            inputs.append(x)
+    return programs, inputs
 
 
 def values_and_gradients(n):
@@ -40,7 +45,9 @@ def derived(_, programs, inputs):
     points=4,
     tolerance=ANALYTIC,
     sole="fifty expressions, against finite differences and complex steps of ours",
-    battery=[Subject("adapters.run_graphs", expressions, values_and_gradients, right=derived)],
+    battery=[
+        Subject("adapters.run_graphs", expressions, values_and_gradients, right=derived, large=100)
+    ],
 )
 def fifty_random_expressions(t):
     """Values and gradients of fifty random expressions are right."""

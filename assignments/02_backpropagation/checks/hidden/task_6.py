@@ -9,12 +9,33 @@ from ..task_6 import VERDICT, smooth
 STEPS = Tolerance(1e-3, "x + h is rounded: 1e-11 of h; a step half or twice as long is off by 0.5")
 
 
-def checked_place(t, n):
-    """Arguments of `grad_check`, for n numbers."""
-    return smooth(t.rng, n)
-
-
 SMALL = 1e-6  # the error of a gradient that is accepted
+
+
+def wrong_somewhere(t, n):
+    """Arguments of `grad_check`, for n numbers, with one wrong entry of the gradient."""
+    f, x = smooth(t.rng, n)
+    entry = int(t.rng.integers(n))
+
+    def g(at):
+        value, gradient = f(at)
+        gradient[entry] *= 1.5
+        return value, gradient
+
+    return g, x
+
+
+def asked_for(make, is_right):
+    """The battery of `grad_check`, for functions whose gradients are right, or are not."""
+    return Subject(
+        "adapters.checked",
+        make,
+        lambda _: VERDICT,
+        right=lambda *_: is_right,
+        common=lambda _t, _args, error: 0.0 <= error <= SMALL,
+        tolerance=EXACT,
+        large=300,
+    )
 
 
 @hidden_check(
@@ -23,9 +44,8 @@ SMALL = 1e-6  # the error of a gradient that is accepted
     calls=("grad_check",),
     sole="the steps themselves, and gradients of 1e-9",
     battery=[
-        Subject(
-            "adapters.checked", checked_place, lambda _: VERDICT, tolerance=EXACT, has_right=False
-        )
+        asked_for(lambda t, n: smooth(t.rng, n), is_right=True),
+        asked_for(wrong_somewhere, is_right=False),
     ],
 )
 def large_and_small_numbers(t):

@@ -3,7 +3,7 @@
 
 def sampled(t, n):
     """A texture and n points."""
-    return t.rng.uniform(-1.0, 1.0, (3, 5, 2)), t.rng.uniform(-0.1, 1.1, (n, 2))
+    return t.rng.uniform(-1.0, 1.0, (3, 5, 2)), t.rng.uniform(-0.5, 1.5, (n, 2))
 
 
 def measured(t, n):

@@ -16,6 +16,6 @@ from .common import sampled
 )
 def samples_at_random_places(t):
     """Samples are right at random points of random textures, one texel wide ones included."""
-    for shape in ((6, 3, 2), (1, 9, 1), (7, 1, 3), (1, 1, 2), (16, 11, 3)):
-        T, uv = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.1, 1.1, (150, 2))
+    for shape in ((6, 3, 2), (1, 9, 1), (7, 1, 3), (1, 1, 2), (16, 11, 3), (90, 70, 1), (2, 3, 60)):
+        T, uv = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.5, 1.5, (150, 2))
         t.close("samples", sample(t, T, uv), t.reference.bilinear_sample(T, uv))

@@ -17,7 +17,7 @@ from .common import measured
 )
 def loss_and_gradient_of_random_textures(t):
     """Loss and gradient are right, cheap or not, on random textures and measurements."""
-    for shape, n in (((4, 6, 3), 50), ((5, 2, 1), 7)):
+    for shape, n in (((4, 6, 3), 50), ((5, 2, 1), 7), ((60, 40, 9), 50)):
         T, uv = t.rng.uniform(0.0, 1.0, shape), t.rng.uniform(0.0, 1.0, (n, 2))
         target = t.rng.uniform(0.0, 1.0, (n, shape[2]))
         loss, d_T = loss_and_grad(t, T, uv, target)

@@ -18,7 +18,8 @@ from .common import sampled
             "largest_curvature",
             lambda t, n: ((3, 5), sampled(t, 40)[1], n),
             lambda _: Number(),
-            sizes=(0, 1, 60),
+            sizes=(0, 1, 7),
+            large=100,
         )
     ],
 )

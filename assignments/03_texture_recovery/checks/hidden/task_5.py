@@ -20,7 +20,8 @@ from .common import measured
             "recover_texture",
             lambda t, n: (*measured(t, 40), n),
             lambda n: Items(Array((3, 5, 2)), Array((n + 1,)), Array((3, 5), "bool")),
-            sizes=(0, 1, 60),
+            sizes=(0, 1, 7),
+            large=200,
             tolerance=CHAINED,
         )
     ],

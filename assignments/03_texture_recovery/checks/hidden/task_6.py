@@ -22,7 +22,9 @@ def tiled(t, n):
     calls=("build_mips",),
     tolerance=EXACT,
     sole="the same mistakes on textures not known",
-    battery=[Subject("build_mips", tiled, lambda n: pyramid(tile(n))[1], sizes=(0, 1, 2, 7))],
+    battery=[
+        Subject("build_mips", tiled, lambda n: pyramid(tile(n))[1], sizes=(1, 2, 7), large=12)
+    ],
 )
 def pyramids_of_random_textures(t):
     """All levels are right for random textures."""

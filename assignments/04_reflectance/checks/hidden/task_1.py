@@ -19,7 +19,7 @@ def some_model(t, n):
     calls=("furnace",),
     tolerance=EXACT,
     sole="the same mistakes with unseen models",
-    battery=[Subject("furnace", some_model, lambda n: Array((n, 2)), rows=(1,))],
+    battery=[Subject("furnace", some_model, lambda n: Array((n, 2)), rows=(1,), large=40)],
 )
 def other_models(t):
     """An unseen model is integrated rightly."""

@@ -25,6 +25,7 @@ def approached(t, n):
             "march_sdf",
             approached,
             lambda n: Items(distances(n), Array((n,))),
+            large=100,
             rows=(1, 2),
             tolerance=SLOPES,
         )

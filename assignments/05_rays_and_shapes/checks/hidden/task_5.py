@@ -4,7 +4,7 @@ import numpy as np
 from photograd_course.grading import Array, Items, Subject, hidden_check
 from photograd_course.grading.generators import unit_vectors
 
-from ..common import EXACT, WHOLE, Scene, built
+from ..common import EXACT, WHOLE, Scene, built, require_tree
 from ..task_5 import held
 
 
@@ -12,6 +12,17 @@ def stacked(t, n):
     """Arguments of `build_bvh`."""
     low = t.rng.uniform(-5, 5, (n, 3))
     return low, low + t.rng.uniform(0.2, 1.0, (n, 3))
+
+
+def tight(low, high, primitives):
+    """The smallest box of each list of primitives."""
+    return np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in primitives])
+
+
+def misfit(t, args, tree):
+    """By how much boxes of a tree are off: 0 for all right ones."""
+    require_tree(t, len(args[0]), tree)
+    return float(np.abs(tree[0] - tight(*args, held(tree))).max())
 
 
 @hidden_check(
@@ -25,7 +36,7 @@ def stacked(t, n):
             "build_bvh",
             stacked,
             lambda _: Items(Array((None, 2, 3)), WHOLE, WHOLE, WHOLE),
-            has_right=False,
+            common=misfit,
         )
     ],
 )
@@ -38,8 +49,7 @@ def trees_at_random(t):
         low, high = middle - half, middle + half
         tree = built(t, low, high)
         primitives = held(tree)
-        right = np.array([[low[mine].min(axis=0), high[mine].max(axis=0)] for mine in primitives])
-        t.close(f"boxes of {count} primitives", tree[0], right)
+        t.close(f"boxes of {count} primitives", tree[0], tight(low, high, primitives))
         asked = 0
         for _ in range(24):
             scene = Scene(low, high)

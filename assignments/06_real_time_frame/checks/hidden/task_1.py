@@ -36,7 +36,7 @@ def spec_of(n):
 )
 def triangles_at_random(t):
     """Many random triangles, among them some without area and some beyond the border."""
-    for height, width in ((20, 31), (31, 20)):
+    for height, width in ((20, 31), (31, 20), (90, 120)):
         corners = soup(t, 60, height, width)
         face, weights, depth = drawn(t, corners, height, width)
         right = t.reference.rasterize(corners, height, width)

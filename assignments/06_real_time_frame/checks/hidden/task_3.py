@@ -20,6 +20,7 @@ from ..task_3 import case, lit_layer
             lambda t, n: case(t, n, n + 1),
             lambda n: Array((n, n + 1, 4)),
             sizes=(1, 2, 5),
+            large=24,
         )
     ],
 )

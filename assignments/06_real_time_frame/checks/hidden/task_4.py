@@ -18,7 +18,7 @@ def unseen(t, n):
     calls=("bloom",),
     tolerance=FAITHFUL,
     sole="the same mistakes in unseen pictures",
-    battery=[Subject("bloom", unseen, lambda n: Array((n, n + 2, 3)), sizes=(1, 2, 9))],
+    battery=[Subject("bloom", unseen, lambda n: Array((n, n + 2, 3)), sizes=(1, 2, 9), large=40)],
 )
 def random_pictures(t):
     """Random pictures, thresholds, widths and strengths."""

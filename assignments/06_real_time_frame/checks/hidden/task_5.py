@@ -20,7 +20,9 @@ def spec_of(n):
     tolerance=EXACT,
     adjoints=("tone_map",),
     sole="the same mistakes in unseen pictures",
-    battery=[Subject("tone_map", lambda t, n: case(t, n, n + 1), spec_of, sizes=(1, 2, 6))],
+    battery=[
+        Subject("tone_map", lambda t, n: case(t, n, n + 1), spec_of, sizes=(1, 2, 6), large=40)
+    ],
 )
 def random_pictures(t):
     """Random pictures with black pixels, of any exposure."""

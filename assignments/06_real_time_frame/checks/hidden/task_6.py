@@ -18,7 +18,11 @@ def spec_of(n):
     tolerance=EXACT,
     adjoints=("ambient_occlusion",),
     sole="the same mistakes in unseen depths",
-    battery=[Subject("ambient_occlusion", lambda t, n: bumpy(t, n, n + 2), spec_of, sizes=(4, 9))],
+    battery=[
+        Subject(
+            "ambient_occlusion", lambda t, n: bumpy(t, n, n + 2), spec_of, sizes=(4, 9), large=40
+        )
+    ],
 )
 def rough_walls(t):
     """Rough walls with holes, samples beyond the picture, on sky and on the pixel itself."""

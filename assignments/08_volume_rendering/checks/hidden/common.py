@@ -9,4 +9,4 @@ SUMS = Tolerance(
 
 def placed(t, n):
     """A grid, and n points."""
-    return t.rng.uniform(-1.0, 1.0, (3, 1, 4, 2)), t.rng.uniform(-0.1, 1.1, (n, 3))
+    return t.rng.uniform(-1.0, 1.0, (3, 1, 4, 2)), t.rng.uniform(-0.5, 1.5, (n, 3))

@@ -17,7 +17,7 @@ from ..common import EXACT, random_rays, seen
             "composite",
             lambda t, n: random_rays(t, 2, n, 1, 0.1),
             lambda _: seen(2, 1),
-            sizes=(1, 300),
+            sizes=(1, 2),
         ),
     ],
 )

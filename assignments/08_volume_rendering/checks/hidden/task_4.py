@@ -16,7 +16,7 @@ from .common import placed
 )
 def samples_at_random_points(t):
     """Samples are right at random points of random grids, one voxel wide ones included."""
-    for shape in ((6, 3, 4, 2), (1, 5, 2, 1), (1, 1, 1, 3)):
-        grid, u = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.1, 1.1, (90, 3))
+    for shape in ((6, 3, 4, 2), (1, 5, 2, 1), (1, 1, 1, 3), (40, 30, 20, 2), (2, 3, 2, 60)):
+        grid, u = t.rng.uniform(-1.0, 1.0, shape), t.rng.uniform(-0.5, 1.5, (90, 3))
         got = t.call("trilinear", grid, u, returns=Array((90, shape[3])))
         t.close("samples", got, t.reference.trilinear(grid, u))

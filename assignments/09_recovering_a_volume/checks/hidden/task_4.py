@@ -27,7 +27,12 @@ TV_COST = 2500.0
 )
 def the_roughness_of_random_volumes(t):
     """Total variation and its derivative are right for random volumes, and cheap."""
-    for shape, eps in (((4, 3, 5, 4), 0.1), ((1, 6, 2, 1), 0.01), ((1, 1, 1, 3), 0.5)):
+    for shape, eps in (
+        ((4, 3, 5, 4), 0.1),
+        ((1, 6, 2, 1), 0.01),
+        ((1, 1, 1, 3), 0.5),
+        ((40, 9, 12, 4), 0.1),
+    ):
         grid = t.rng.uniform(0.0, 1.0, shape)
         got, right = rough(t, grid, eps), t.reference.tv_loss_adjoint(grid, eps)
         t.close("loss", got[0], right[0])

@@ -45,7 +45,8 @@ def telling_start(t, views, shape, seed):
             right=lambda ref, views, grid, n, seed: ref.fit_volume(
                 views, grid, n, np.random.default_rng(seed)
             ),
-            sizes=(0, 1, 12),
+            sizes=(0, 1, 6),
+            large=60,
         )
     ],
 )

@@ -23,6 +23,7 @@ def skipping(t, n):
             skipping,
             lambda n: Array((n, 20), "bool"),
             rows=(1, 2),
+            large=100,
             tolerance=FAITHFUL,
         )
     ],

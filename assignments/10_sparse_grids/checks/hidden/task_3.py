@@ -20,7 +20,7 @@ def gathered(t, n):
 )
 def the_adjoint_at_random_samples(t):
     """The adjoint is right for random samples, many of one voxel and none of another."""
-    for count, samples, channels in ((7, 30, 4), (1, 5, 1), (90, 40, 3)):
+    for count, samples, channels in ((7, 30, 4), (1, 5, 1), (90, 40, 3), (2000, 40, 60)):
         row, weight = some_samples(t, count, samples)
         g = t.rng.uniform(-1, 1, (samples, channels))
         right = t.reference.sample_sparse_adjoint(count, row, weight, g)

@@ -9,7 +9,8 @@ from ..task_4 import pruned, some_shares, voxels_in
 def shared(t, n):
     """Arguments of `prune_and_dilate`, for n voxels."""
     most = t.rng.uniform(0.1, 0.9, n)
-    return 4, voxels_in(t, 4, n), *some_shares(t, most), 0.5, 1
+    side = 4 if n < 64 else 12
+    return side, voxels_in(t, side, n), *some_shares(t, most), 0.5, 1
 
 
 @hidden_check(

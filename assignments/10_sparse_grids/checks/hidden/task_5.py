@@ -25,8 +25,8 @@ def for_rays(t, n):
     tolerance=CHAINED,
     sole="the same mistakes at unseen scenes",
     battery=[
-        Subject("fit_sparse", for_steps, lambda n: Fit(2 * n), sizes=(0, 1, 3)),
-        Subject("fit_sparse", for_rays, lambda _: Fit(4)),
+        Subject("fit_sparse", for_steps, lambda n: Fit(2 * n), sizes=(0, 1, 3), large=20),
+        Subject("fit_sparse", for_rays, lambda _: Fit(4), large=100),
     ],
 )
 def fits_of_random_scenes(t):

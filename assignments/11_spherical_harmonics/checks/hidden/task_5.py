@@ -27,7 +27,13 @@ def among(t, n):
 )
 def irradiance_among_random_probes(t):
     """Irradiance is right among random probes, for each degree, one probe wide grids included."""
-    for degree, shape in ((0, (2, 2, 2)), (2, (3, 1, 4)), (3, (1, 5, 2)), (4, (2, 3, 3))):
+    for degree, shape in (
+        (0, (2, 2, 2)),
+        (2, (3, 1, 4)),
+        (3, (1, 5, 2)),
+        (4, (2, 3, 3)),
+        (1, (12, 9, 7)),
+    ):
         probes = t.rng.uniform(-1.0, 1.0, (*shape, (degree + 1) ** 2, 2))
         p, n = t.rng.uniform(-0.5, 4.0, (12, 3)), unit_vectors(t.rng, 12)
         right = t.reference.probe_irradiance(probes, p, n)

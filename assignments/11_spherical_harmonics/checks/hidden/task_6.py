@@ -19,7 +19,8 @@ check = checks_for(calls=("fit_plenoxels",), needs=EARLIER, visibility="hidden")
             "fit_plenoxels",
             lambda t, n: (*small_case(t.rng, (2, 1, 3)), 1, n),
             lambda n: Items(Array((2, 1, 3)), Array((2, 1, 3, 4, 1)), Array((n,))),
-            sizes=(0, 1, 12),
+            sizes=(0, 1, 6),
+            large=40,
         )
     ],
 )

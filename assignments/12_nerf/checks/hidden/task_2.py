@@ -35,7 +35,7 @@ def returned(n):
 )
 def derivatives_of_random_networks(t):
     """Derivatives are right for random networks of any depth, and cheap."""
-    for sizes in ((4, 3), (1, 5, 1), (3, 4, 4, 4, 2)):
+    for sizes in ((4, 3), (1, 5, 1), (3, 4, 4, 4, 2), (2, 300, 2), (120, 3, 90)):
         layers, x = layers_of(t.rng, sizes), t.rng.normal(size=(5, sizes[0]))
         g = t.rng.uniform(-1.0, 1.0, (5, sizes[-1]))
         d_layers, d_x = derivatives(t, layers, x, g)

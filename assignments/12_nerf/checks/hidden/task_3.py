@@ -26,11 +26,17 @@ CHI_SQUARE = 57.8
 )
 def distances_on_random_rays(t):
     """Distances are right on random rays."""
-    for rays, count, n in ((3, 1, 5), (4, 12, 1), (5, 6, 8)):
+    for rays, count, n in ((3, 1, 5), (4, 12, 1), (5, 6, 8), (2, 100, 150)):
         edges, weights = intervals(t.rng, rays, count)
         u = t.rng.random((rays, n))
         right = t.reference.sample_distances(edges, weights, u)
         t.close("distances", sampled(t, edges, weights, u), right)
+    # The last v is rounded to 1, the end of the CDF.
+    edges, weights = intervals(t.rng, 4, 3)
+    weights[:, -1] += 0.1
+    u = np.concatenate([t.rng.random((4, 5)), np.full((4, 1), np.nextafter(1.0, 0.0))], axis=1)
+    right = t.reference.sample_distances(edges, weights, u)
+    t.close("distances to the last edge", sampled(t, edges, weights, u), right)
 
 
 @check("12.3.chi", points=2, sole="the distribution itself, whatever the formula")

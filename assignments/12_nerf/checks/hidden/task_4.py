@@ -26,8 +26,8 @@ def given(t, n):
 )
 def fields_of_random_networks(t):
     """Densities, colors and activations are right for random networks."""
-    for n in (1, 6):
-        network, p, d = given(t, n)
+    wide = network_of(t.rng, 120, 40), *samples(t, 3)
+    for network, p, d in (given(t, 1), given(t, 6), wide):
         got, right = field(t, network, p, d), t.reference.radiance_field(network, p, d)
         for name, mine, theirs in zip(("sigma", "color"), got, right, strict=False):
             t.close(name, mine, theirs)

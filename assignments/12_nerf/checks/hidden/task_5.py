@@ -25,11 +25,11 @@ def given(t, n):
     needs=EARLIER,
     tolerance=EXACT,
     sole="the same mistakes in unseen batches",
-    battery=[Subject("loss_and_grad", given, lambda _: loss_spec(SHAPES))],
+    battery=[Subject("loss_and_grad", given, lambda _: loss_spec(SHAPES), large=300)],
 )
 def gradients_of_random_batches(t):
     """Loss and gradient are right for random batches, and cheap."""
-    for rays, count in ((1, 1), (2, 7)):
+    for rays, count in ((1, 1), (2, 7), (100, 2)):
         network, batch = network_of(t.rng, 5, 3), random_views(t.rng, rays)
         distances = ascending(t.rng, rays, count)
         got = loss_of(t, network, batch, distances)

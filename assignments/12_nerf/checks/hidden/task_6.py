@@ -25,6 +25,7 @@ SHAPES = network_of(np.random.default_rng(0))
                 views, network, n, np.random.default_rng(seed)
             ),
             sizes=(0, 1, 4),
+            large=120,
         )
     ],
 )

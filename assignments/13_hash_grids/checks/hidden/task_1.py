@@ -24,13 +24,19 @@ def leaves_of(n):
     return Items(Array((side, side), "i8"), Array((side * side, 2)))
 
 
+def found(_t, _args, answer):
+    """What right leaves have in common, in any order: which cells share one, and its values."""
+    leaf, values = answer
+    return [same_cubes(leaf).astype(float), values[leaf]]
+
+
 @hidden_check(
     "13.1.hidden",
     points=2,
     calls=("tabulate",),
     tolerance=EXACT,
     sole="the same mistakes in unseen fields",
-    battery=[Subject("tabulate", bumpy, leaves_of, has_right=False)],
+    battery=[Subject("tabulate", bumpy, leaves_of, common=found, large=32)],
 )
 def leaves_of_random_fields(t):
     """Leaves of smooth random fields are the largest cubes within the tolerance."""

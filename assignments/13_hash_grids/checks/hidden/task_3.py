@@ -9,7 +9,7 @@ from ..task_3 import EARLIER, encoded
 def encoding(t, n):
     """Arguments of `encode`, for n points."""
     levels = layout([2, 4, 9], 3, 64)
-    return t.rng.uniform(-0.1, 1.1, (n, 3)), table_for(t, levels), levels
+    return t.rng.uniform(-0.5, 1.5, (n, 3)), table_for(t, levels), levels
 
 
 @hidden_check(
@@ -23,8 +23,13 @@ def encoding(t, n):
 )
 def features_of_random_points(t):
     """Features of random points, on dense and hashed levels."""
-    for D, resolutions, features in ((2, [1, 5, 40], 3), (3, [4, 30], 2), (2, [1000, 7], 1)):
+    for D, resolutions, features in (
+        (2, [1, 5, 40], 3),
+        (3, [4, 30], 2),
+        (2, [1000, 7], 1),
+        (2, [3] * 20, 9),
+    ):
         levels = layout(resolutions, D, 100)
-        table, points = table_for(t, levels, features), t.rng.uniform(-0.1, 1.1, (20, D))
+        table, points = table_for(t, levels, features), t.rng.uniform(-0.5, 1.5, (20, D))
         right = t.reference.encode(points, table, levels)
         t.close(f"features, D = {D}", encoded(t, points, table, levels), right)

@@ -12,7 +12,7 @@ check = checks_for(calls=("encode_backward",), needs=EARLIER, tolerance=EXACT, v
 def scattered(t, n):
     """Arguments of `encode_backward`, for n points, the first of them outside."""
     levels = layout([2, 4, 9], 3, 64)
-    table, points = table_for(t, levels), t.rng.uniform(-0.1, 1.1, (n, 3))
+    table, points = table_for(t, levels), t.rng.uniform(-0.5, 1.5, (n, 3))
     points[:1, 0] = 1.05
     return points, table, levels, random_cotangent(t.rng, (n, 6))
 
@@ -32,7 +32,12 @@ def scattered(t, n):
 )
 def the_adjoint_at_random_points(t):
     """Both parts of the adjoint are right at random points, on dense and hashed levels."""
-    for D, resolutions, features in ((2, [1, 5, 40], 3), (3, [4, 30], 2), (2, [1000, 7], 1)):
+    for D, resolutions, features in (
+        (2, [1, 5, 40], 3),
+        (3, [4, 30], 2),
+        (2, [1000, 7], 1),
+        (2, [3] * 20, 9),
+    ):
         levels = layout(resolutions, D, 100)
         table, points = table_for(t, levels, features), points_within(t, 20, D, levels)
         g = random_cotangent(t.rng, (20, len(levels) * features))

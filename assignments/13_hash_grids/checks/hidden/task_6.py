@@ -21,7 +21,7 @@ def spec_of(n):
     "13.6.hidden",
     points=3,
     sole="the same mistakes in unseen cases",
-    battery=[Subject("train_hash_grid", small_case, spec_of, sizes=(0, 1, 6))],
+    battery=[Subject("train_hash_grid", small_case, spec_of, sizes=(0, 1, 6), large=150)],
 )
 def training_in_random_cases(t):
     """Eight steps end where they should, in the plane and in space."""

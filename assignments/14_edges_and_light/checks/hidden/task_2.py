@@ -8,9 +8,9 @@ from ..common import EXACT, regular, sampled
 check = checks_for(calls=("edge_sampling_backward",), visibility="hidden")
 
 
-def scene(t, n):
+def scene(t, n, count=0):
     """Arguments of the adapter, for n samples; a part of the polygon lies beyond the picture."""
-    count = int(t.rng.integers(3, 8))
+    count = count or int(t.rng.integers(3, 8))
     polygon = regular(t, count, [9, 7], 7.5) + t.rng.uniform(-1, 1, (count, 2))
     colors = t.rng.uniform(-1, 1, (2, 3, 3)) * [1, 0.1, 0.1]
     return polygon, colors, t.rng.uniform(-1, 1, (12, 15, 3)), t.rng.random(n)
@@ -27,12 +27,21 @@ def right_of(reference, vertices, colors, d_image, u):
     points=2,
     tolerance=EXACT,
     sole="unseen polygons, partly beyond the picture",
-    battery=[Subject("adapters.sampled_edges", scene, lambda _: Array((None, 2)), right=right_of)],
+    battery=[
+        Subject(
+            "adapters.sampled_edges",
+            lambda t, n: scene(t, n, 3 + n % 5),  # equal n: equal shapes
+            lambda _: Array((None, 2)),
+            right=right_of,
+        )
+    ],
 )
 def unseen_polygons(t):
     """Random samples of random polygons, compared with the solution, sample by sample."""
-    for _ in range(3):
-        given = scene(t, 300)
+    for count, twice in ((0, False), (200, False), (0, True)):
+        given = list(scene(t, 300, count))
+        if twice:  # a vertex, so that a side has no length
+            given[0] = np.repeat(given[0], np.arange(len(given[0])) % 3 // 2 + 1, axis=0)
         t.close("d_vertices", sampled(t, *given), right_of(t.reference, *given))
 
 

@@ -20,12 +20,16 @@ def stroke(t, n):
     points=2,
     tolerance=EXACT,
     sole="unseen strokes",
-    battery=[Subject("stroke_backward", stroke, lambda _: Items(Array((3, 2)), Number()))],
+    battery=[
+        Subject("stroke_backward", stroke, lambda _: Items(Array((3, 2)), Number()), large=150)
+    ],
 )
 def unseen_strokes(t):
     """Random strokes, compared with the solution."""
-    for n in (3, 10):
+    for n in (3, 10, 0):
         given = stroke(t, n)
+        if n == 0:  # a center lies on the curve, at its start
+            given[0][0] = 1.5, 2.5
         right = t.reference.stroke_backward(*given)
         got = stroke_slopes(t, *given)
         t.close("d_curve", got[0], right[0])

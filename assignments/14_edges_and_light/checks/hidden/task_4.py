@@ -12,7 +12,7 @@ REPLAYED = Tolerance(1e-6, "right ones differ by 1e-13, wrong ones by 1e-3 or mo
 
 def arguments(t, n):
     """Arguments of `replay_backward` for n rays."""
-    scene, rays, seed = corner_scene(t.rng), rays_down(t.rng, n), int(t.rng.integers(10**6))
+    scene, rays, seed = corner_scene(t.rng), rays_down(t.rng, n), n
     radiance = t.reference.path_radiance(scene, *rays, 3, seed)
     return scene, *rays, 3, seed, radiance, random_cotangent(t.rng, (n, 3))
 

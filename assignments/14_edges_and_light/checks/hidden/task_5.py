@@ -29,6 +29,7 @@ def arguments(t, n):
             "noisy_loss_and_grad",
             arguments,
             lambda _: Items(Number(), *material_spec({"matte": range(4)})),
+            large=300,
         )
     ],
 )

@@ -20,7 +20,7 @@ def arguments(t, n):
     points=2,
     tolerance=EXACT,
     sole="unseen lenses",
-    battery=[Subject("landing_backward", arguments, lambda n: Array((n + 1, n + 1)))],
+    battery=[Subject("landing_backward", arguments, lambda n: Array((n + 1, n + 1)), large=32)],
 )
 def unseen_lenses(t):
     """Random lenses, compared with the solution."""

@@ -19,6 +19,11 @@ def backprojected(t, n):
     return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
 
 
+def folded_pair(pair):
+    """(d_means, d_cov), the second as right ones have it in common."""
+    return [pair[0], folded(pair[1])]
+
+
 @hidden_check(
     "15.2.hidden",
     points=3,
@@ -38,8 +43,9 @@ def backprojected(t, n):
             "adapters.project_back",
             backprojected,
             lambda n: Items(Array((n, 3)), Array((n, 3, 3))),
+            right=lambda ref, *args: folded_pair(ref.project(*args[:3])[3](*args[3:])),
+            common=lambda _t, _args, pair: folded_pair(pair),
             rows=(0, 1, 3, 4),
-            has_right=False,
         ),
     ],
 )

@@ -34,13 +34,13 @@ from .common import derivatives, values
 )
 def random_splats(t):
     """Values and derivatives are right for splats of all kinds, cut off here and there."""
-    n, pixels = 12, t.rng.uniform(0.0, 16.0, (40, 2))
+    n, pixels = 12, t.rng.uniform(0.0, 16.0, (300, 2))
     m, half = t.rng.uniform(-2.0, 18.0, (n, 2)), t.rng.normal(size=(n, 2, 2)) * 2
     full = half @ half.swapaxes(1, 2)
     s, o = full[:, [0, 0, 1], [0, 1, 1]], t.rng.uniform(-3.0, 8.0, n)
     pixels[:2] = m[:2] + 0.01
     o[:2] = 9.0
-    g = random_cotangent(t.rng, (n, 40))
+    g = random_cotangent(t.rng, (n, 300))
     alpha, pullback = t.reference.screen_alpha(m, s, o, pixels)
     t.close("alpha", taken(t, m, s, o, pixels), alpha)
     got = taken_back(t, m, s, o, pixels, g)

@@ -6,17 +6,15 @@ Everything else in this package speaks `Engine`, so that it can be tested withou
 from __future__ import annotations
 
 import shutil
-import signal
-import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Any, Protocol
 
 from photograd._extras import import_extra
+from photograd._signals import stop_on_signals
 from photograd.errors import IoError, SceneError, message
 
 UPGRADE = "pip install --upgrade pycolmap"
@@ -246,36 +244,16 @@ class _Pycolmap:
             database.close()
 
     def _run(self, stage: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
-        """The stage in a thread of its own, so that Ctrl-C is heard and ends it politely.
+        """The stage in a thread of its own, so that signals are heard and end it politely.
 
         It ends at the next photograph or pair; until then more of them change nothing, since an
         interpreter that left before its threads would crash.
         """
         token = self.module.CancellationToken()
-        with _interruptions(token.cancel), ThreadPoolExecutor(1) as pool:
+        hold = stop_on_signals(token.cancel, all_of_them=True)
+        with hold as stopping, ThreadPoolExecutor(1) as pool:
             future = pool.submit(stage, *arguments, **options, cancellation_token=token)
             while not future.done():
                 wait([future], timeout=_POLL_S)
+        stopping.deliver()
         return future.result()
-
-
-@contextmanager
-def _interruptions(cancel: Callable[[], None]) -> Iterator[None]:
-    """Ctrl-C calls `cancel`; KeyboardInterrupt is raised at the end. In other threads: nothing."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    heard = False
-
-    def hear(_number: int, _frame: FrameType | None) -> None:
-        nonlocal heard
-        heard = True
-        cancel()
-
-    previous = signal.signal(signal.SIGINT, hear)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, previous)
-    if heard:
-        raise KeyboardInterrupt

@@ -32,7 +32,8 @@ from photograd._checkpoint import (
     save_checkpoint,
 )
 from photograd._checks import require_instance
-from photograd._descend import Progress, descend
+from photograd._descend import Progress, Run, changing, descend
+from photograd._typed import typed_call
 from photograd.errors import DtypeError, Error, IoError, RangeError, message
 from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
@@ -50,6 +51,7 @@ after the end."""
 SMOOTH = 10  # steps over which the shown loss is averaged
 
 
+@typed_call
 class InverseRendering:
     """Inverse rendering in progress.
 
@@ -109,6 +111,7 @@ class InverseRendering:
         self.optimizer = Adam(beta_2=MEMORY)
         self._rate = exponential(self.options.final_rate, self.options.steps)
         self.step_number = 0
+        self.changing = False
         self.history: list[tuple[float, float, float]] = []
         self.curves = {name: [_summary(value)] for name, value in self.values().items()}
         self._sampled = self.values()
@@ -172,11 +175,12 @@ class InverseRendering:
         }
         rate = self.options.learning_rate * self._rate(step)
         rates = {name: rate * each.rate for name, each in self.parameters.items()}
-        self.optimizer.step(self.x, gradients, rates)
-        self.history.append((step, loss, rate))
-        for name, value in self.values().items():
-            self.curves[name].append(_summary(value))
-        self.step_number += 1
+        with changing(self):
+            self.optimizer.step(self.x, gradients, rates)
+            self.history.append((step, loss, rate))
+            for name, value in self.values().items():
+                self.curves[name].append(_summary(value))
+            self.step_number += 1
         return loss
 
     def run(
@@ -206,14 +210,17 @@ class InverseRendering:
                 recent = [loss for _, loss, _ in self.history[-SMOOTH:]]
                 on_step(Progress(self.step_number, self.options.steps, float(np.mean(recent))))
 
-        run = descend(
+        def result(run: Run) -> RecoveryResult:
+            return self.result(run.seconds)
+
+        return descend(
             self,
             folder,
+            result,
             after_step=after_step,
             should_stop=should_stop,
             checkpoint_seconds=checkpoint_seconds,
         )
-        return self.result(run.seconds)
 
     def result(self, seconds: float = 0.0) -> RecoveryResult:
         """What has been found so far.
@@ -232,13 +239,13 @@ class InverseRendering:
             seconds,
         )
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path) -> Path:
         """Write the checkpoint DIR/recovery.npz atomically; IoError if that fails.
 
         Args:
             folder: DIR, which exists.
         """
-        save_state(folder, self, self._sampled)
+        return save_state(folder, self, self._sampled)
 
     def load(self, folder: Path) -> None:
         """Go on where the checkpoint in `folder` ends.
@@ -284,7 +291,7 @@ def _summary(value: Array) -> Array:
 FILE_NAME = "recovery.npz"
 
 
-def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -> None:
+def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -> Path:
     """Write DIR/recovery.npz; `sampled` are the values that the tracer was built with.
 
     Args:
@@ -296,7 +303,7 @@ def save_state(folder: Path, job: InverseRendering, sampled: dict[str, Array]) -
     state |= {f"curves.{name}": np.array(rows) for name, rows in job.curves.items()}
     meta = {"step": job.step_number, **fingerprint(job)}
     history = np.array(job.history, np.float64).reshape(-1, 3)
-    save_checkpoint(
+    return save_checkpoint(
         folder / FILE_NAME, Checkpoint(meta, dict(job.x), job.optimizer.state(), state, history)
     )
 

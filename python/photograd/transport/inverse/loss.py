@@ -31,6 +31,7 @@ import numpy as np
 from photograd._arrays import Arguments
 from photograd._checks import typed
 from photograd._compiled import _core
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.errors import ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, pair_counts
@@ -41,6 +42,7 @@ from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Target:
     """A photograph, or a rendering, of the scene that is looked for.
@@ -136,6 +138,7 @@ PILOT = 16
 PILOT_SEED = 0x5DEECE66D  # makes another seed of one
 
 
+@typed_call
 def dual_buffer_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
     """The mean of w (a - t) (b - t); all four are (H, W, 3). Below 0 now and then, by chance.
 
@@ -147,6 +150,7 @@ def dual_buffer_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
     return float(np.mean(weight * (a - target) * (b - target)))
 
 
+@typed_call
 def dual_buffer_loss_backward(
     a: Array, b: Array, target: Array, weight: Array, d_loss: float = 1.0
 ) -> tuple[Array, Array]:
@@ -162,6 +166,7 @@ def dual_buffer_loss_backward(
     return share * (b - target), share * (a - target)
 
 
+@typed_call
 def loss_and_gradients(
     tracer: PathTracer,
     target: Array,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 from photograd._checks import require_bounds, require_choices
+from photograd._typed import typed_call
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene
 from photograd.types import Array
@@ -15,6 +16,7 @@ Loss = Literal["relative", "squared"]
 LOSSES: tuple[Loss, ...] = get_args(Loss)
 
 
+@typed_call
 @dataclass(frozen=True)
 class RecoveryOptions:
     """How parameters are found.
@@ -61,6 +63,7 @@ class RecoveryOptions:
 # What is reported at the end.
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class RecoveryResult:
     """What was found.

@@ -21,6 +21,7 @@ from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
 from photograd._checks import require_choices
+from photograd._typed import typed_call
 from photograd.errors import RangeError, message
 from photograd.lights import EnvironmentMap, Light
 from photograd.transport.incomplete import require_whole
@@ -73,6 +74,7 @@ class Activation:
 # A scene with other numbers: what was found, or where lights are to be asked anew.
 
 
+@typed_call
 def scene_with(scene: Scene, params: Mapping[str, Any]) -> Scene:
     """The scene with parameters changed.
 
@@ -127,6 +129,7 @@ def _light_with(light: Light, parameter: str, value: Any) -> Light:
 # What inverse rendering may change: a parameter of the tracer, between bounds.
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class Parameter:
     """A parameter that is to be found.

@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from photograd._descend import progress_bar, run_folder
+from photograd._typed import typed_call
 from photograd.transport.inverse.job import FILE_NAME, InverseRendering
 from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Parameter
 from photograd.transport.scene import Scene
 
 
+@typed_call
 def recover(
     scene: Scene,
     targets: Any,

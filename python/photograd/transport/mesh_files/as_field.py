@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.color import srgb_encode
 
+from photograd._typed import typed_call
 from photograd.errors import RangeError, SceneError, message
 from photograd.fields.layered_picture import Unwrapped
 from photograd.fields.mesh_surface import MeshSurface
@@ -28,6 +29,7 @@ MARGIN = 1 / 64
 """Around the texture of each of several shapes, in sizes of its square."""
 
 
+@typed_call
 def read_textured_mesh(path: str | Path) -> TexturedMesh:
     """The shapes of a mesh file with one gray texture; `read_model` says which files.
 
@@ -67,6 +69,7 @@ def read_textured_mesh(path: str | Path) -> TexturedMesh:
     return TexturedMesh.of_mesh(mesh)
 
 
+@typed_call
 def read_mesh_surface(path: str | Path) -> MeshSurface:
     """The shapes of a mesh file as one mesh of gray vertices; `read_model` says which files.
 
@@ -92,6 +95,7 @@ def read_mesh_surface(path: str | Path) -> MeshSurface:
     return MeshSurface.of_mesh(*without_seams(mesh))
 
 
+@typed_call
 def read_textured_surface(path: str | Path) -> TexturedSurface:
     """The one shape of a mesh file with its color texture, and its opacity where it has one.
 

@@ -13,6 +13,7 @@ import numpy as np
 from photograd_course.atomic_io import atomic_write
 
 from photograd._gltf_bytes import GltfBytes
+from photograd._typed import typed_call
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.medium import BOUNDARY, VACUUM
 from photograd.transport.mesh_files.gltf_cameras import gltf_camera
@@ -37,6 +38,7 @@ _SURROUNDINGS = ("shutter", "environment", "world")
 _REASONS = 8
 
 
+@typed_call
 def save_gltf(model: Scene | ModelFile, path: Path) -> None:
     """Write the meshes of a scene as .glb, or as .gltf with everything in one file.
 

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from photograd._checks import require_bounds
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.types import Array
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class ModelCamera:
     """A pinhole whose axis goes through the middle of the picture; nothing near or far is cut off.

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from photograd._typed import typed_call
 from photograd.errors import SceneError
 from photograd.lights import Light
 from photograd.transport.material import Material
@@ -22,6 +23,7 @@ Arrays = tuple[Array, Array, Array | None, Array | None]
 MAX_COORDINATE = 1e9
 
 
+@typed_call
 @dataclass(frozen=True, eq=False)
 class ModelFile:
     """Shapes of a file in its own world, +Y up by the file's word.

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from photograd_course.suggest import choose_from
 
+from photograd._typed import typed_call
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.gltf import read_gltf
@@ -30,6 +31,7 @@ NOTES = 40
 """So many things left out are named; a damaged file has no end of them."""
 
 
+@typed_call
 def read_model(path: str | Path) -> ModelFile:
     """The shapes, materials and textures of a mesh file; of .glb and .gltf cameras and lights, too.
 

@@ -10,6 +10,7 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.input_files import read_file
 
 from photograd._arrays import Arguments
+from photograd._typed import typed_call
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
@@ -59,6 +60,7 @@ def _text(path: Path, data: bytes) -> Array:
         return np.array(rows, np.float64).reshape(-1, 3).astype(np.float32)
 
 
+@typed_call
 def write_stl(path: Path, vertices: Array, faces: Array) -> None:
     """Write triangles as a binary .stl file, atomically.
 

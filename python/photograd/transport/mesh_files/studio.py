@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from photograd_course.suggest import choose_from
 
+from photograd._typed import typed_call
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import SceneError, message
@@ -21,6 +22,7 @@ STUDIO = "studio"
 """In place of a camera's name."""
 
 
+@typed_call
 def default_scene(
     model: ModelFile, name: str, size: int = 256, *, camera: str | None = None
 ) -> Scene:

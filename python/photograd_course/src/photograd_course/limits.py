@@ -59,5 +59,9 @@ EXPANSION = Limit("PHOTOGRAD_MAX_EXPANSION", 1 << 28, "bytes more than the file 
 """Memory for arrays that a file declares but does not hold: zeros of a sparse accessor, what an
 archive unpacks to. What a file holds byte by byte needs no limit."""
 
-LIMITS = (PIXELS, MODEL_ELEMENTS, EXPANSION, TOML_BYTES)
+SVG_BYTES = Limit("PHOTOGRAD_MAX_SVG_BYTES", 8 << 20, "bytes of SVG")
+"""Reading takes at most some hundred times as much memory."""
+CROSSINGS = Limit("PHOTOGRAD_MAX_CROSSINGS", 1 << 30, "steps over edges that cross in a drawing")
+
+LIMITS = (PIXELS, MODEL_ELEMENTS, EXPANSION, TOML_BYTES, SVG_BYTES, CROSSINGS)
 """All of them; README and `photograd --help` list them."""

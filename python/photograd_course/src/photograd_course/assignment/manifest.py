@@ -42,9 +42,9 @@ class Manifest:
         module: the graded module's name, without ".py".
         submission: names of the files that a submission consists of.
         prerequisites: ids of assignments that come before.
-        hours: expected work.
+        hours: of work, an estimate.
         tasks: in order.
-        imports: what the graded module may import.
+        imports: what the graded module may import besides the pure modules of `worker.screen`.
         vocabulary: names from the solution that students may see.
         minimum_mode: weakest isolation that a verdict may rest on.
         points: {"code": 75, "questions": 25}, checked against checks and questions.

@@ -13,14 +13,14 @@ from ..cli.output import emit, note
 from ..cli.progress import Progress
 from ..errors import IoError, message
 from .assignment_build import AssignmentBuild
-from .course_file import NAME, course_findings, read_course
+from .course_file import NAME, course_findings, plan_without, read_course
 from .course_files import build_of
 from .hint_table import public_hints, write_hints
 from .kits import match_folder, no_sources, source_folders, source_root
 from .products import make_products, publishable, write_tree
 from .public import GLOSSARY
 from .rules import Finding, findings, reading_findings, seed_findings
-from .secret import course_secret
+from .secret import course_secret, secret_beside
 
 
 @dataclass(frozen=True)
@@ -51,13 +51,14 @@ def build_command(request: Request) -> bool:
         written = _publish(root, folders, out, found)
         return _say(request, found, {"out": out, "assignments": written})
     out = request.out or root.parent / "build" / "course"
-    secret, place = course_secret(request.secret_file, out)
+    secret = course_secret(request.secret_file, [secret_beside(out)])
+    note(secret.explained())
     trees = {}
     for name, folder in folders.items():
         if request.update_hints:
             write_hints(folder, public_hints(build_of(folder, root=root, bar=bar)))
         judged = build_of(folder, root=root, bar=bar)
-        build = replace(judged, secret=secret, public_from=judged)
+        build = replace(judged, secret=secret.value, public_from=judged)
         bad = findings(judged) or seed_findings(build)
         if not bad:
             trees[name] = make_products(build, read_wheels(request.wheels)).files()
@@ -66,7 +67,7 @@ def build_command(request: Request) -> bool:
         for name, files in trees.items():
             write_tree(out / name, files)
     written = [] if found else list(trees)
-    return _say(request, found, {"out": out, "secret": place, "assignments": written})
+    return _say(request, found, {"out": out, "secret": secret.place, "assignments": written})
 
 
 def chosen_folders(numbers: Sequence[str]) -> tuple[Path, dict[str, Path]]:
@@ -118,9 +119,10 @@ def _publish(root: Path, folders: dict[str, Path], out: Path, found: list[Findin
     if found:
         return []
     files: dict[str, bytes] = {}
-    for path in (root / NAME, root / GLOSSARY):
-        if path.exists():
-            files[path.name] = path.read_bytes()
+    if (root / NAME).exists():
+        files[NAME] = plan_without(root, folders)
+    if (root / GLOSSARY).exists():
+        files[GLOSSARY] = (root / GLOSSARY).read_bytes()
     for name, folder in folders.items():
         files.update({f"{name}/{path}": data for path, data in publishable(folder).items()})
     write_tree(out / "assignments", files)

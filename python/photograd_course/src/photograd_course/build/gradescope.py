@@ -7,6 +7,7 @@ container's own user stays root; each submission runs as another one, in isolati
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from importlib import metadata
 
@@ -17,6 +18,7 @@ PINNED = (
     "numpy",
     "matplotlib",
     "pillow",
+    "pyseccomp",
     "pyyaml",
     "rich",
     "tomlkit",
@@ -25,36 +27,38 @@ PINNED = (
 )
 EXECUTABLE = ("setup.sh", "run_autograder")
 
+# Python's own venv, and what each isolation mode needs: bubblewrap for A, libseccomp2 for B and C.
 SETUP = """#!/usr/bin/env bash
-# Runs once, when Gradescope builds the container.
+# Runs once, when Gradescope builds the container (Python 3.10 or newer).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 chmod -R go-rwx .   # bundle and secret are for root alone
-if ! python3 -m ensurepip --version >/dev/null 2>&1; then
-    apt-get update
-    apt-get install -y --no-install-recommends python3 python3-venv
-fi
+apt-get update
+apt-get install -y --no-install-recommends libseccomp2 python3 python3-venv
 apt-get install -y --no-install-recommends bubblewrap || echo "no bubblewrap: mode B or C"
-python3 -m venv /opt/photograd
+home=${PHOTOGRAD_HOME:-/opt/photograd}
+python3 -m venv "$home"
 if ls wheels/numpy-*.whl >/dev/null 2>&1; then
-    /opt/photograd/bin/pip install --no-index --find-links wheels photograd-course
+    "$home/bin/pip" install --no-index --find-links wheels 'photograd-course[grader]'
 else
-    /opt/photograd/bin/pip install -c constraints.txt wheels/photograd_course-*.whl
+    wheel=$(echo "$PWD"/wheels/photograd_course-*.whl)
+    "$home/bin/pip" install -c constraints.txt "photograd-course[grader] @ file://$wheel"
 fi
-chmod -R go+rX /opt/photograd
-/opt/photograd/bin/photograd version
+chmod -R go+rX "$home"
+"$home/bin/photograd" version
+"$home/bin/python" -I -m photograd_course.build.gradescope_run NUMBER --modes
 """
 
 RUN = """#!/usr/bin/env bash
 # Runs for each submission. results.json is written after every check.
 set -uo pipefail
 umask 077
-source=/autograder/source
-chmod -R go-rwx "$source"
-exec /opt/photograd/bin/python -I -m photograd_course.build.gradescope_run NUMBER \\
-    --bundle "$source/hidden.zip" --secret-file "$source/secret.txt" \\
-    --submission /autograder/submission --metadata /autograder/submission_metadata.json \\
-    --results /autograder/results/results.json
+top=${AUTOGRADER:-/autograder}
+chmod -R go-rwx "$top/source"
+exec "${PHOTOGRAD_HOME:-/opt/photograd}/bin/python" -I -m photograd_course.build.gradescope_run \\
+    NUMBER --bundle "$top/source/hidden.zip" --secret-file "$top/source/secret.txt" \\
+    --submission "$top/submission" --metadata "$top/submission_metadata.json" \\
+    --results "$top/results/results.json"
 """
 
 
@@ -72,7 +76,7 @@ def gradescope_zip(
     """
     name, wheel = course_wheel()
     files = {
-        "setup.sh": SETUP.encode(),
+        "setup.sh": SETUP.replace("NUMBER", number).encode(),
         "run_autograder": RUN.replace("NUMBER", number).encode(),
         "hidden.zip": bundle,
         "secret.txt": secret + b"\n",
@@ -84,5 +88,13 @@ def gradescope_zip(
 
 
 def constraints() -> str:
-    """The versions that the bundle was built with, and its tolerances measured."""
-    return "".join(f"{name}=={metadata.version(name)}\n" for name in PINNED)
+    """The versions that the bundle was built with, and its tolerances measured.
+
+    Each is asked for where it runs: an older Python in the container takes the newest that it can.
+    """
+    return "".join(f"{name}=={metadata.version(name)}{_marker(name)}\n" for name in PINNED)
+
+
+def _marker(name: str) -> str:
+    oldest = re.search(r">=\s*(\d+\.\d+)", metadata.metadata(name)["Requires-Python"] or "")
+    return f'; python_version >= "{oldest[1]}"' if oldest else ""

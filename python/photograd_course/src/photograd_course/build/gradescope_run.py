@@ -1,7 +1,8 @@
 """The program that `run_autograder` starts: grade one submission and keep results.json up to date.
 
 It does what `photograd course grade` does for one submission, and writes after every check, so that
-what was proven counts even if the container is stopped.
+what was proven counts even if the container is stopped. With `--modes` it grades nothing and says
+which isolation the container has: its build ends with that.
 """
 
 from __future__ import annotations
@@ -20,17 +21,23 @@ from ..submissions.report import Report
 from ..submissions.report_gradescope import ResultsFile, best_earlier
 from ..submissions.submission import Submission
 from ..submissions.workers import Workers, isolated_workers
+from ..worker.debuggers import close_to_debuggers
+from ..worker.modes import probe
+from ..worker.policy import TITLES
 
 STUDENT = "submission"  # whose it is, Gradescope knows
+STRICT = ("A", "B", "C")  # as root in a container; D shares its user with the grader
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Grade and say how it went: 0, or 3 when the grader itself failed (never the student's loss).
+    """Grade and say how it went: 0, or 3 when the grader itself failed (then there is no score).
 
     Args:
         words: of the command line; by default this process's.
     """
     given = _options(words)
+    if given.modes:
+        return _say_modes()
     loaded = load(given.number, given.bundle, given.secret_file)
     bundle = loaded.read()
     results = ResultsFile(given.results, bundle, best_earlier(given.metadata))
@@ -59,14 +66,29 @@ def main(words: Sequence[str] | None = None) -> int:
     return 0 if report.is_sound else 3
 
 
+def _say_modes() -> int:
+    """Each mode and why it does not work here; 3 where none is left that isolates."""
+    reasons = {mode: reason for mode, reason in probe().items() if mode in STRICT}
+    for mode, reason in reasons.items():
+        sys.stdout.write(f"isolation {TITLES[mode]}: {reason or 'works'}\n")
+    return 0 if "" in reasons.values() else 3
+
+
 def _options(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description="Grade one Gradescope submission.")
     parser.add_argument("number")
-    for name in ("bundle", "secret-file", "submission", "metadata", "results"):
-        parser.add_argument(f"--{name}", type=Path, required=True)
+    parser.add_argument("--modes", action="store_true")
     parser.add_argument("--mode", default=None)
-    return parser.parse_args(words)
+    needed = ("bundle", "secret-file", "submission", "metadata", "results")
+    for name in needed:
+        parser.add_argument(f"--{name}", type=Path)
+    given = parser.parse_args(words)
+    lacking = [name for name in needed if getattr(given, name.replace("-", "_")) is None]
+    if lacking and not given.modes:
+        parser.error(f"these are required: {', '.join(f'--{name}' for name in lacking)}")
+    return given
 
 
 if __name__ == "__main__":
+    close_to_debuggers()
     sys.exit(main())

@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 
 from ..assignment.bundle import PUBLIC_SECRET
+from ..atomic_io import atomic_write
 from ..grading.check import Check
 from ..grading.hints import hint_key
 from .assignment_build import AssignmentBuild
@@ -58,6 +59,6 @@ def write_hints(folder: Path, table: Mapping[str, str]) -> None:
     """Commit a table to the folder; an empty one leaves no file."""
     path = folder / "hints.json"
     if table:
-        path.write_text(json.dumps(table, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        atomic_write(path, (json.dumps(table, indent=1, sort_keys=True) + "\n").encode())
     else:
         path.unlink(missing_ok=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
 import tempfile
 from collections.abc import Mapping
@@ -9,9 +11,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..assignment.bundle import Bundle, read_folder
-from ..assignment.manifest import Manifest
+from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.toml import read_toml
-from ..errors import IoError, RangeError, message
+from ..errors import IoError, RangeError, SceneError, message
 from ..suggest import choose_from
 from .public import kit_files, public_files
 
@@ -30,16 +32,49 @@ class Kit:
         manifest: of the assignment.
         files: of the student's folder, path to content.
         bundle: the public checks and questions.
+        digest: of the files that these come from.
     """
 
     manifest: Manifest
     files: Mapping[str, bytes]
     bundle: Bundle
+    digest: str
 
 
 def list_kits(root: Path | None = None) -> list[str]:
-    """Folder names such as "01_gradient_descent", in order."""
+    """Folder names such as "01_gradient_descent", in order.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     return sorted(_places(root))
+
+
+def list_manifests(root: Path | None = None) -> list[Manifest]:
+    """The manifests of all assignments that can be started here, in order.
+
+    One that cannot be read is left out: it says so where it is asked for itself.
+
+    Args:
+        root: a folder of assignments, or None for those that are here.
+    """
+    found = []
+    for folder in manifest_folders(root).values():
+        with contextlib.suppress(IoError, SceneError):
+            found.append(read_manifest(folder))
+    return found
+
+
+def manifest_folders(root: Path | None = None) -> dict[str, Path]:
+    """Where the manifest of each assignment lies, by folder name: in its source, or in a wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
+    return {
+        name: place / "public" if (place / "kit").is_dir() else place
+        for name, place in sorted(_places(root).items())
+    }
 
 
 def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
@@ -62,7 +97,9 @@ def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
     else:
         files, public = kit_files(place), public_files(place)
     bundle = bundle_of(public, name)
-    return Kit(bundle.manifest, files, bundle)
+    digests = [f"{path} {hashlib.sha256(data).hexdigest()}" for path, data in public.items()]
+    digest = hashlib.sha256("\n".join(digests).encode()).hexdigest()
+    return Kit(bundle.manifest, files, bundle, digest)
 
 
 def require_ready(id_or_name: str, folders: list[str], root: Path | None = None) -> None:
@@ -94,11 +131,19 @@ def require_ready(id_or_name: str, folders: list[str], root: Path | None = None)
 
 def _plan(root: Path | None) -> list[Mapping[str, object]]:
     """The assignments that the course plans, as its file names them; none where it has no file."""
-    for top in (root or source_root(), PACKAGE / "kits"):
-        if top is not None and (top / PLAN).is_file():
-            entries = read_toml(top / PLAN).get("assignment", [])
-            return [entry for entry in entries if isinstance(entry, dict)]
-    return []
+    top = plan_folder(root)
+    entries = read_toml(top / PLAN).get("assignment", []) if top else []
+    return [entry for entry in entries if isinstance(entry, dict)]
+
+
+def plan_folder(root: Path | None = None) -> Path | None:
+    """Where the plan of the course lies: among its sources, or with the kits of a wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
+    tops = (root or source_root(), PACKAGE / "kits")
+    return next((top for top in tops if top is not None and (top / PLAN).is_file()), None)
 
 
 def match_folder(id_or_name: str, folders: list[str]) -> str:
@@ -117,7 +162,11 @@ def match_folder(id_or_name: str, folders: list[str]) -> str:
 
 
 def source_folders(root: Path | None = None) -> dict[str, Path]:
-    """Assignments in source, by folder name; empty in an installed wheel."""
+    """Assignments in source, by folder name; empty in an installed wheel.
+
+    Args:
+        root: as for `list_manifests`.
+    """
     top = root or source_root()
     if top is None or not top.is_dir():
         return {}

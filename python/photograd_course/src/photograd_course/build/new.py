@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import keyword
+import shutil
 from pathlib import Path
 
 from ..errors import IoError, RangeError, message
@@ -33,13 +34,21 @@ def new_assignment(number: str, name: str, root: Path) -> Path:
         if taken.startswith(f"{number}_"):
             raise RangeError(message("new", "NN", "a free number", f"{number}: {taken} has it"))
     folder = root / f"{number}_{name}"
+    if folder.exists():
+        raise IoError(message("new", str(folder), "a new folder", "one that is there"))
+    # Under a name that is no assignment's, until it is whole: a run that was cut off leaves none.
+    fresh = root / f".{folder.name}.new"
     try:
-        folder.mkdir(parents=True)
+        shutil.rmtree(fresh, ignore_errors=True)
         for path, text in template(number, name).items():
-            (folder / path).parent.mkdir(exist_ok=True)
-            (folder / path).write_text(text, encoding="utf-8")
+            (fresh / path).parent.mkdir(parents=True, exist_ok=True)
+            (fresh / path).write_text(text, encoding="utf-8")
+        write_hints(fresh, public_hints(build_of(fresh, root=root)))
+        fresh.rename(folder)
     except OSError as error:
+        shutil.rmtree(fresh, ignore_errors=True)
+        if isinstance(error, IoError):
+            raise
         got = error.strerror or str(error)
         raise IoError(message("new", str(folder), "a new folder", got)) from error
-    write_hints(folder, public_hints(build_of(folder, root=root)))
     return folder

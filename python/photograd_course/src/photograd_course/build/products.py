@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import IoError, message
 from .assignment_build import AssignmentBuild
 from .gradescope import EXECUTABLE, gradescope_zip
 from .hint_table import hints_of
@@ -15,7 +16,8 @@ from .page.page import handout_page, with_figures
 from .public import PAGE, glossary, kit_files, public_files
 from .seal import bundle_files, seal_bundle
 
-SOLUTION = ("handout.md", "figures.py", "explore.py", "equivalent.toml")
+BUILT = ".built"  # marks what `photograd course build` has written, and may replace
+BUILT_TEXT = "Written by photograd course build, which replaces this folder as a whole.\n"
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,21 @@ def publishable(folder: Path) -> dict[str, bytes]:
 
 
 def write_tree(target: Path, files: Mapping[str, bytes]) -> None:
-    """Write files into a folder that holds nothing else afterwards."""
+    """Write files into a folder that holds nothing else afterwards.
+
+    Only what an earlier build has written is replaced; anything else is refused.
+
+    Args:
+        target: the folder.
+        files: path to content.
+
+    Raises:
+        IoError: the folder holds something else.
+    """
+    if (found := _foreign(target)) is not None:
+        remedy = "nothing was written; remove it, or give another folder with --out"
+        expected = "a new folder, or one that an earlier build has written"
+        raise IoError(message("build", str(target), expected, f"one with {found}", remedy))
     fresh = target.with_name(f".{target.name}.new")
     shutil.rmtree(fresh, ignore_errors=True)
     for path, data in sorted(files.items()):
@@ -117,5 +133,15 @@ def write_tree(target: Path, files: Mapping[str, bytes]) -> None:
         place.write_bytes(data)
         if place.name in EXECUTABLE:
             place.chmod(0o755)
+    (fresh / BUILT).write_text(BUILT_TEXT, encoding="utf-8")
     shutil.rmtree(target, ignore_errors=True)
     fresh.rename(target)
+
+
+def _foreign(target: Path) -> str | None:
+    """What lies in a folder that no build has written; None where a build may replace it."""
+    if not target.exists() or (target / BUILT).is_file():
+        return None
+    if not target.is_dir():
+        return "a file of this name"
+    return next((path.name for path in sorted(target.iterdir())), None)

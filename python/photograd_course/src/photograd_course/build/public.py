@@ -50,7 +50,8 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     if (folder / "explore.py").exists():
         script = _text(folder / "explore.py")
         files["explore.py"] = _encode(script)
-        files["explore.ipynb"] = _encode(notebook_of(script))
+        graded = [f"{name}.py" for name in (manifest.module, *manifest.brought)]
+        files["explore.ipynb"] = _encode(notebook_of(script, graded))
     if (folder / "adapters.py").exists():
         files["adapters.py"] = _encode(_text(folder / "adapters.py"))
     for pattern in COPIED:
@@ -88,12 +89,14 @@ def readme(manifest: Manifest, handout: str) -> str:
 > `photograd course questions {number}`; answers and your name go into `answers.toml`, numbers
 > to four significant digits. `photograd course submit {number}` packs the archive to hand in.
 > Green is not finished: some checks run only after you have handed in. `explore.py`, or the
-> notebook `explore.ipynb`, is for play.
+> notebook `explore.ipynb`, is for play, and makes Figure 1 with your functions.
 >
-> **A derivative is written, not computed.** No complex steps, dual numbers, finite differences or
-> code made from text in a function that returns a derivative, nor in what it calls. The grader
-> looks for them in the source, and a derivative that costs many forward calls earns none of its
-> task's points.
+> **A derivative is written, not computed.** No complex steps, dual numbers, finite differences,
+> fits or contour integrals of shifted evaluations, nor code made from text, in a function that
+> returns a derivative and in what it calls. The grader looks at the source and at what the function
+> does when it runs; a derivative that costs many forward calls earns none of its task's points.
+> Allowed: your own tape of assignment 02, stored paths, the forward function again at the same
+> inputs, and finite differences in a test of your own that no graded function calls.
 >
 > **Every function** leaves its arguments as they are, reads arrays of any memory layout (read-only
 > ones and views too), and gives equal answers to equal calls. A row alone gets what it gets

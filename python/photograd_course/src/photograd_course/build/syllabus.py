@@ -8,7 +8,7 @@ from typing import Any
 from ..cli.output import emit
 from ..errors import SceneError, message
 from .course_file import course_findings, read_course
-from .kits import no_sources, source_root
+from .kits import no_sources, plan_folder
 
 
 def syllabus(track: str, root: Path) -> dict[str, Any]:
@@ -32,7 +32,7 @@ def syllabus(track: str, root: Path) -> dict[str, Any]:
                     "week": number,
                     "assignment": entry.id,
                     "title": entry.title,
-                    "hours": entry.hours,
+                    "estimated_hours": entry.hours,
                     "needs": ", ".join(entry.prerequisites) or "nothing",
                     "state": "ready" if entry.ready else "planned",
                 }
@@ -41,7 +41,7 @@ def syllabus(track: str, root: Path) -> dict[str, Any]:
         "track": chosen.name,
         "title": chosen.title,
         "weeks": rows,
-        "hours": sum(row["hours"] for row in rows),
+        "estimated_hours": sum(row["estimated_hours"] for row in rows),
         "ready": sum(row["state"] == "ready" for row in rows),
         "planned": sum(row["state"] == "planned" for row in rows),
     }
@@ -51,9 +51,9 @@ def print_syllabus(track: str, *, as_json: bool) -> None:
     """`photograd course syllabus`.
 
     Raises:
-        IoError: this is no checkout.
+        IoError: there is no plan of a course here.
     """
-    root = source_root()
+    root = plan_folder()
     if root is None:
         raise no_sources("syllabus", "course.toml")
     emit(syllabus(track, root), as_json=as_json)

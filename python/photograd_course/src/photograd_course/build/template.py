@@ -13,7 +13,7 @@ module = "NAME"
 submission = ["NAME.py", "answers.toml"]
 prerequisites = []
 hours = 1
-imports = ["numpy", "math"]
+imports = ["numpy"]
 vocabulary = []
 points = { code = 75, questions = 25 }
 

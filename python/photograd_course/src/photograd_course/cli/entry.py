@@ -13,6 +13,7 @@ import typer
 from typer.main import get_command
 
 from ..limits import LIMITS
+from ..worker.debuggers import close_to_debuggers
 from . import course, version
 from .core_commands import add_missing_core_commands
 from .failures import INTERRUPTED, Failure, ended_early, tell
@@ -32,6 +33,8 @@ EPILOG = (
 
 def main() -> None:
     """Run the command line of this process and exit."""
+    if "grade" in sys.argv[1:]:
+        close_to_debuggers()
     sys.exit(run(sys.argv[1:]))
 
 

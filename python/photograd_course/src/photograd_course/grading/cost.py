@@ -18,6 +18,7 @@ import numpy as np
 
 from .failures import CheckFailed, TooExpensive
 from .specs import Spec
+from .tolerance import Tolerance
 from .trial import Trial
 
 COST_RATIO = 20.0  # an adjoint costs 2 to 5 forward calls, differences one for each parameter
@@ -51,20 +52,21 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
 
     Raises:
         TooExpensive: it does not.
-        CheckFailed: the answer to a timed call is another than the reference's.
+        CheckFailed: the answer to a timed call is wrong, or that to an earlier call.
     """
     if trial.cpu_seconds() is None:
         return
     measured, most = 0.0, np.inf
     if (plain := _reference_seconds(trial, forward)) is not None:
         most = REFERENCE_RATIO * max(plain, SHORTEST)
+    known = [forward[1]], [backward[1]]
     for _ in range(2):
-        once = max(statistics.median([_cost(trial, forward) for _ in range(3)]), SHORTEST)
-        twice = [_cost(trial, backward) for _ in range(2)]
+        once = max(statistics.median([_cost(trial, forward, known[0]) for _ in range(3)]), SHORTEST)
+        twice = [_cost(trial, backward, known[1]) for _ in range(2)]
         if min(twice) > CONCLUSIVE * ratio * once:
             measured = min(twice) / once
             break
-        back = statistics.median([*twice, _cost(trial, backward)])
+        back = statistics.median([*twice, _cost(trial, backward, known[1])])
         measured = back / once
         if measured <= ratio and back <= most:
             return
@@ -80,8 +82,11 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
     )
 
 
-def _cost(trial: Trial, call: Call) -> float:
-    """Processor seconds of a call, over as many calls as the clock needs to tell."""
+def _cost(trial: Trial, call: Call, known: list[Sequence[Any]]) -> float:
+    """Processor seconds of a call, over as many calls as the clock needs to tell.
+
+    `known` are arguments of earlier calls: the plain ones, the first that were varied, the last.
+    """
     function, args, spec = call
     seconds, calls = 0.0, 0
     while seconds < LEAST_SECONDS and calls < MOST_CALLS:
@@ -90,7 +95,8 @@ def _cost(trial: Trial, call: Call) -> float:
         answer = trial.call(function, *varied, returns=spec)
         seconds += (trial.cpu_seconds() or 0.0) - before
         calls += 1
-        _require_fresh(trial, function, varied, answer)
+        _require_right(trial, function, varied, answer, known)
+        known[min(len(known), 2) :] = [varied]
     return seconds / calls
 
 
@@ -101,13 +107,19 @@ def _varied(trial: Trial, value: Any) -> Any:
     return value
 
 
-def _require_fresh(trial: Trial, function: str, args: Sequence[Any], answer: Any) -> None:
+def _require_right(
+    trial: Trial, function: str, args: Sequence[Any], answer: Any, known: Sequence[Sequence[Any]]
+) -> None:
+    """Raise CheckFailed for a wrong answer; one that is right for arguments in `known` is old."""
     reference = _reference(trial, function, args)
-    if reference is not None and not agree(answer, reference(*args)):
+    if reference is None or agree(answer, right := reference(*args)):
+        return
+    if any(agree(answer, reference(*earlier)) for earlier in known):
         raise CheckFailed(
-            f"{function}: the answer to a timed call does not belong to its arguments",
+            f"{function}: returns the answer to an earlier call, whose arguments were others",
             {"advice": "compute it from the arguments each time"},
         )
+    require_close(trial, f"{function}, in a call that is timed", answer, right)
 
 
 def _reference(trial: Trial, function: str, args: Sequence[Any]) -> Callable[..., Any] | None:
@@ -132,6 +144,19 @@ def _reference_cost(reference: Callable[..., Any], args: Sequence[Any]) -> float
         reference(*args)
         calls += 1
     return (time.process_time() - began) / calls
+
+
+def require_close(trial: Trial, what: str, got: Any, expected: Any) -> None:
+    """Raise CheckFailed for two answers that do not `agree`, naming the part that is wrong."""
+    if isinstance(expected, dict) and isinstance(got, dict):
+        for name in expected:
+            require_close(trial, f"{what}, {name}", got.get(name), expected[name])
+    elif isinstance(expected, (tuple, list)) and isinstance(got, (tuple, list)):
+        for k, (mine, right) in enumerate(zip(got, expected, strict=True)):
+            require_close(trial, f"{what}, item {k}", mine, right)
+    elif not agree(got, expected):
+        trial.close(what, got, expected, Tolerance(AGREEMENT, "two ways to write the same sum"))
+        raise CheckFailed(f"{what}: wrong")
 
 
 def agree(got: Any, expected: Any) -> bool:

@@ -14,7 +14,10 @@ class CheckFailed(Exception):
 
     Attributes:
         text: one sentence for the student; never contains a hidden value.
-        details: numbers for the report: error, tolerance, worst index, expected sign and scale.
+        details: for the report: error, tolerance, worst index, expected sign and scale, how the
+            answer relates to the right one ("relation"), the class of the arguments ("case"). The
+            runner takes out "advice" (of the comparison: what is often wrong) and "explained" (the
+            text leaves nothing open, so that advice could only lead away).
         fingerprint: of the wrong answer, for the table of known mistakes.
         arrays: (got, expected) where a picture of them helps.
     """
@@ -32,6 +35,10 @@ class WrongForm(CheckFailed):
     """The answer is of another kind, shape or dtype: its values, and hints, come later."""
 
 
+class NotFinite(CheckFailed):
+    """Values are NaN or infinite: hints are about values that are wrong, NumPy's warning is not."""
+
+
 class TooExpensive(CheckFailed):
     """The answer is right, at a price that no written adjoint has."""
 
@@ -42,17 +49,19 @@ class StudentFailure(Exception):
 
     Attributes:
         reason: "not implemented", "raised", "missing", "timeout", "died", "protocol", "forbidden",
-            "unreadable", "broken" (it does not import), "output" or "rule" (a derivative is not
-            written).
+            "unreadable", "broken" (it does not import), "output", "rule" (a derivative is not
+            written, as its text shows) or "computed" (the same, as its runs show).
         text: one sentence for the student.
         private: what may hold input of a check (an exception's text); shown for public checks only.
         line: (file, line) in the submission.
+        case: the class of the arguments, such as "for no rows"; empty for everyday ones.
     """
 
     reason: str
     text: str
     private: str = ""
     line: tuple[str, int] | None = None
+    case: str = ""
 
     def __str__(self) -> str:
         return self.text

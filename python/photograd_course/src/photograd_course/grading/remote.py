@@ -8,12 +8,14 @@ from typing import Any, Protocol
 
 from ..worker.codec import Frame
 from ..worker.process import WorkerDied, WorkerLied, WorkerStarved, WorkerTimeout, contains_function
-from ..worker.screen import OF_ANNOTATIONS
+from ..worker.screen import PURE
 from .failures import MachineTooBusy, StudentFailure
 from .local import not_implemented
 from .trial import Breach
 
 START_SECONDS = 30.0
+MOST_REFUSED = 5  # imports that are named
+USES_REFUSED = "uses a module that it may not import"
 
 
 @dataclass(frozen=True)
@@ -53,11 +55,16 @@ class Connection(Protocol):
 
 
 class RemoteStudent:
-    """Loads the submission into a started worker and forwards calls."""
+    """Loads the submission into a started worker and forwards calls.
+
+    Attributes:
+        refused: a sentence for each import that its modules may not have.
+    """
 
     def __init__(self, connection: Connection, hand: Hand) -> None:
         self._connection = connection
         self.breaches: dict[str, Breach] = {}
+        self.refused: tuple[str, ...] = ()
         try:
             if hand.adjoints:
                 self._screen(hand)
@@ -89,9 +96,8 @@ class RemoteStudent:
             "while being imported",
         )
         if frame.kind == "loaded":
+            self.refused = _refused(frame.value, hand.allowed)
             return
-        if frame.kind == "forbidden":
-            raise _forbidden(frame.value, hand.allowed)
         if frame.kind in {"unreadable", "broken"}:
             says = "cannot be read as Python" if frame.kind == "unreadable" else "does not import"
             kind, text, line = _described(frame.value)
@@ -113,16 +119,28 @@ class RemoteStudent:
             raise StudentFailure("protocol", "the submission interfered with the worker")
         return found["value"], found["args"]
 
-    def _call(self, request: dict[str, Any], seconds: float) -> Any:
+    def watch(
+        self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
+    ) -> tuple[Any, Any]:
+        """See Student for function, args, puts and seconds."""
+        request = {"function": function, "args": list(args), "puts": puts}
+        found = self._call(request, seconds, "watch")
+        if not isinstance(found, dict) or set(found) != {"value", "trace"}:
+            raise StudentFailure("protocol", "the submission interfered with the worker")
+        return found["value"], found["trace"]
+
+    def _call(self, request: dict[str, Any], seconds: float, kind: str = "call") -> Any:
         function = request["function"]
         name = function.rpartition(".")[2]
-        frame = self._ask("call", request, seconds, f"in {name}")
+        frame = self._ask(kind, request, seconds, f"in {name}")
         if frame.kind == "result" and not contains_function(frame.value):
             return frame.value
         if frame.kind == "raised":
             kind, text, line = _described(frame.value)
             if kind == "NotImplementedError":
                 raise not_implemented(function, text, line)
+            if kind == "ImportRefused":
+                raise StudentFailure("forbidden", f"{name} {USES_REFUSED}", text, line)
             where = f" ({line[0]}, line {line[1]})" if line else ""
             said = f"{name} raised {kind}{where}"
             raise StudentFailure("raised", said, f"{kind}: {text}", line)
@@ -168,12 +186,15 @@ def _described(value: Any) -> tuple[str, str, tuple[str, int] | None]:
     return name, str(text)[:2000], place
 
 
-def _forbidden(problems: Any, allowed: Sequence[str]) -> StudentFailure:
-    lines = []
-    for problem in problems if isinstance(problems, list) else []:
-        if isinstance(problem, dict):
-            file, line = str(problem.get("file"))[:80], problem.get("line")
-            lines.append(f"{file}, line {line}: imports {str(problem.get('module'))[:60]}")
-    permitted = ", ".join(sorted({*allowed, *OF_ANNOTATIONS}))
-    text = f"{'; '.join(lines[:5])}. A graded module may import {permitted} only: remove the import"
-    return StudentFailure("forbidden", text)
+def _refused(problems: Any, allowed: Sequence[str]) -> tuple[str, ...]:
+    """What is said of imports: the worker names them, and may be lied to."""
+    permitted = ", ".join(sorted({*allowed, *PURE}))
+    found = []
+    for problem in problems[:MOST_REFUSED] if isinstance(problems, list) else []:
+        if isinstance(problem, dict) and isinstance(problem.get("line"), int):
+            file, module = (str(problem.get(key))[:60] for key in ("file", "module"))
+            found.append(
+                f"{file}, line {problem['line']}: imports {module}; functions that use it get no "
+                f"points. A graded module may import {permitted}"
+            )
+    return tuple(found)

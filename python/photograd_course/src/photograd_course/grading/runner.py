@@ -7,20 +7,24 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from .adjoint_watch import Remembering, find_breach
 from .battery import run_battery
 from .check import Check
 from .failures import (
     CheckFailed,
     GraderFault,
     MachineTooBusy,
+    NotFinite,
     StudentFailure,
     TooExpensive,
     WrongForm,
 )
 from .hints import find_hint
 from .outcome import Outcome, Status
-from .trial import Student, Trial
+from .trial import Breach, Student, Trial
 
+# Verdicts that a wrong value of an earlier function can bring about.
+OF_VALUES = ("wrong", "raised", "output", "not implemented")
 Open = Callable[[Mapping[str, Callable[..., Any]]], Student]
 OpenControl = Callable[[], Student]
 
@@ -34,6 +38,8 @@ class Setting:
         seed: numbers that, with a check's id, give its random stream.
         reference: the solution's module, or None on a student's machine.
         hints, salt: the table of known mistakes.
+        earlier: functions of earlier assignments that a check uses, as "module.name" by which a
+            module of the submission knows them, to those of the solutions.
     """
 
     module: str
@@ -41,6 +47,7 @@ class Setting:
     reference: Any = None
     hints: Mapping[str, str] = field(default_factory=dict)
     salt: str = ""
+    earlier: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
 
 
 @dataclass
@@ -60,6 +67,7 @@ def run_checks(
     *,
     open_control: OpenControl | None = None,
     on_outcome: Callable[[Outcome], None] | None = None,
+    wrong: Mapping[str, str] | None = None,
 ) -> list[Outcome]:
     """The outcome of every check, none missing, in the given order.
 
@@ -77,8 +85,9 @@ def run_checks(
         open_control: starts the solution in the same way; None where it is not at hand.
         on_outcome: called after each check; where the price of an adjoint proves too high later,
             the outcomes that are returned have the last word.
+        wrong: functions that are known to be wrong beforehand, to the check that says so.
     """
-    failed: dict[str, str] = {}  # function of the submission to the check in which it failed
+    failed = dict(wrong or {})  # function of the submission to the check in which it failed
     judge = _Judge(open_student, open_control)
     outcomes = []
     for check in checks:
@@ -106,7 +115,7 @@ def run_checks(
         outcomes.append(outcome)
         if on_outcome is not None:
             on_outcome(outcome)
-    return _without_price(checks, outcomes)
+    return _without_price(checks, _without_broken(checks, outcomes, judge.broken))
 
 
 @dataclass(frozen=True)
@@ -115,11 +124,14 @@ class _Judge:
 
     open_student: Open
     open_control: OpenControl | None
+    broken: dict[str, Breach] = field(default_factory=dict)  # by function, seen at run time
 
     def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
         culprits = [name for name in check.needs if name in failed]
+        check = replace(check, hint=_general_advice(check, failed))
         verdict = self._blamed(check, setting, {})
-        if verdict.status is not Status.FAILED or not culprits:
+        may_be_earlier = setting.earlier and verdict.reason in OF_VALUES
+        if verdict.status is not Status.FAILED or not (culprits or may_be_earlier):
             return verdict
         if setting.reference is None:
             if verdict.reason == "not implemented":
@@ -130,10 +142,21 @@ class _Judge:
         substitutes = {
             f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
         }
-        second = self._blamed(check, setting, substitutes)
-        if second.status is Status.PASSED:
-            second.text = f"with the reference's {', '.join(culprits)}"
-            return second
+        if culprits:
+            second = self._blamed(check, setting, substitutes)
+            if second.status is Status.PASSED:
+                second.text = f"with the reference's {', '.join(culprits)}"
+                return second
+        if may_be_earlier:
+            last = self._blamed(check, setting, {**setting.earlier, **substitutes})
+            if last.status is Status.PASSED:
+                brought = sorted({name.rpartition(".")[2] for name in setting.earlier})
+                whose = "yours" if len(brought) == 1 else "one of yours"
+                last.text = (
+                    f"with the reference's {', '.join([*culprits, *brought])}: {whose}, brought "
+                    "from an earlier assignment, is wrong"
+                )
+                return last
         return verdict
 
     def _blamed(
@@ -141,19 +164,19 @@ class _Judge:
     ) -> _Verdict:
         """The verdict; where the body broke, after asking whose doing that was."""
         try:
-            return _run(check, setting, lambda: self.open_student(substitutes))
+            return _run(check, setting, lambda: self.open_student(substitutes), self.broken)
         except _BodyBroke as broke:
             if self.open_control is None or not self._control_passes(check, setting):
                 return _ours(broke.error)
             # Its text is for staff: `for_student` shows it for public checks only.
             said = {"exception": f"{type(broke.error).__name__}: {broke.error}"}
             text = "the values that came back, or were asked for, cannot be judged"
-            return _Verdict(Status.FAILED, "output", text, check.hint, said)
+            return _Verdict(Status.FAILED, "output", text, details=said)
 
     def _control_passes(self, check: Check, setting: Setting) -> bool:
         assert self.open_control is not None
         try:
-            return _run(check, setting, self.open_control).status is Status.PASSED
+            return _run(check, setting, self.open_control, {}).status is Status.PASSED
         except _BodyBroke:
             return False
 
@@ -166,17 +189,32 @@ class _BodyBroke(Exception):
         self.error = error
 
 
-def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
-    """What comes of one run.
+def _general_advice(check: Check, failed: Mapping[str, str]) -> str:
+    """What to read where nothing better is known: a check that has failed before, or the hint.
+
+    Only of the same functions: what a check needs besides is not to blame where this is said.
+    """
+    about = [failed[name] for name in check.calls if name in failed]
+    return f"{about[0]} fails as well: begin there" if about else check.hint
+
+
+def _run(
+    check: Check, setting: Setting, open_one: OpenControl, broken: dict[str, Breach]
+) -> _Verdict:
+    """What comes of one run; derivatives that turn out to be computed are added to ``broken``.
 
     Raises:
         _BodyBroke: nothing; it has to be found out whose doing that was.
     """
     student: Student | None = None
     trial: Trial | None = None
+    remembered: Remembering | None = None
     try:
         student = open_one()
-        _require_written(check, student)
+        _require_written(check, student.breaches)
+        _require_written(check, broken, "computed")
+        if check.adjoints:
+            student = remembered = Remembering(student, check.adjoints)
         seed = (*setting.seed, *check.id.encode())
         trial = Trial(check, student, seed=seed, module=setting.module, reference=setting.reference)
         check.body(trial)
@@ -184,19 +222,17 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
             run_battery(trial, subject)
         if not trial.margins and not trial.asked:
             raise GraderFault(f"{check.id}: passed without comparing anything")
-        verdict = _Verdict(Status.PASSED)
+        breach, otherwise = (None, "") if remembered is None else find_breach(remembered)
+        if breach is not None:
+            broken.update(dict.fromkeys(check.adjoints, breach))
+            _require_written(check, broken, "computed")
+        verdict = _Verdict(Status.PASSED, details={"otherwise": otherwise} if otherwise else {})
     except CheckFailed as failure:
-        hint = find_hint(setting.hints, setting.salt, check.id, failure)
-        advice = str(failure.details.pop("advice", ""))
-        reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
-        general = "" if isinstance(failure, WrongForm) else check.hint
-        verdict = _Verdict(Status.FAILED, reason, failure.text, hint or advice or general)
-        verdict.details.update(failure.details)
-        verdict.arrays = failure.arrays
-        if failure.fingerprint is not None:
-            verdict.details["fingerprint"] = failure.fingerprint
+        verdict = _wrong(check, setting, failure)
     except StudentFailure as failure:
-        verdict = _Verdict(Status.FAILED, failure.reason, failure.text)
+        verdict = _Verdict(Status.FAILED, failure.reason, _with(failure.text, failure.case))
+        if failure.case:
+            verdict.details["case"] = failure.case
         if failure.line is not None:
             verdict.details["line"] = list(failure.line)
         if failure.private and check.visibility == "public":
@@ -214,12 +250,52 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
     return verdict
 
 
-def _require_written(check: Check, student: Student) -> None:
+def _wrong(check: Check, setting: Setting, failure: CheckFailed) -> _Verdict:
+    """The verdict on a wrong answer, with the hint that was seen to fit, or advice."""
+    advice = str(failure.details.pop("advice", ""))
+    explained = failure.details.pop("explained", False)
+    if explained or isinstance(failure, NotFinite):
+        advice = ""
+    elif not isinstance(failure, WrongForm):  # of which its own advice alone speaks
+        advice = advice or check.hint
+    hint = find_hint(setting.hints, setting.salt, check.id, failure) or advice
+    case = str(failure.details.get("case", ""))
+    reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
+    verdict = _Verdict(Status.FAILED, reason, _with(failure.text, case), hint)
+    verdict.details.update({k: v for k, v in failure.details.items() if v != ""})
+    verdict.arrays = failure.arrays
+    if failure.fingerprint is not None:
+        verdict.details["fingerprint"] = failure.fingerprint
+    return verdict
+
+
+def _with(text: str, case: str) -> str:
+    return f"{text} ({case})" if case and case not in text else text
+
+
+def _require_written(check: Check, breaches: Mapping[str, Breach], reason: str = "rule") -> None:
     """Raise StudentFailure where a derivative that the check is about is not written."""
     for function in check.adjoints:
-        if function in student.breaches:
-            said, line = student.breaches[function]
-            raise StudentFailure("rule", said, line=line)
+        if function in breaches:
+            said, line = breaches[function]
+            raise StudentFailure(reason, said, line=line)
+
+
+def _without_broken(
+    checks: Sequence[Check], outcomes: Sequence[Outcome], broken: Mapping[str, Breach]
+) -> list[Outcome]:
+    """The outcomes; what passed before a derivative was seen to be computed has failed as well."""
+    found = []
+    for check, outcome in zip(checks, outcomes, strict=True):
+        said = [broken[name] for name in check.adjoints if name in broken]
+        if said and outcome.status is Status.PASSED:
+            text, line = said[0]
+            details = {**outcome.details, "line": list(line)}
+            lost = replace(outcome, status=Status.FAILED, points=0.0, reason="computed", text=text)
+            found.append(replace(lost, details=details))
+        else:
+            found.append(outcome)
+    return found
 
 
 def _without_price(checks: Sequence[Check], outcomes: Sequence[Outcome]) -> list[Outcome]:

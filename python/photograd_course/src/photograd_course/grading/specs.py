@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..worker.codec import INTEGER_BITS
-from .failures import CheckFailed, WrongForm
+from .failures import CheckFailed, NotFinite, WrongForm
 
 
 class Spec(Protocol):
@@ -49,7 +49,7 @@ class Array:
         if self.finite and value.dtype.kind == "f" and not np.isfinite(value).all():
             index = tuple(int(i) for i in np.argwhere(~np.isfinite(value))[0])
             count = int((~np.isfinite(value)).sum())
-            raise CheckFailed(
+            raise NotFinite(
                 f"{where}: {count} of {value.size} values are not finite, the first at {index}",
                 {"worst_index": index},
             )
@@ -57,7 +57,8 @@ class Array:
             index = tuple(int(i) for i in np.argwhere(~(value > self.above))[0])
             want = f"values above {self.above:g}{_or_infinity(self.finite)}"
             got = f"{value[index]} at index {index}"
-            raise CheckFailed(f"{where}: expected {want}, got {got}", {"worst_index": index})
+            kind = NotFinite if np.isnan(value[index]) else CheckFailed
+            raise kind(f"{where}: expected {want}, got {got}", {"worst_index": index})
 
     def _fits(self, shape: tuple[int, ...]) -> bool:
         pairs = zip(self.shape, shape, strict=False)
@@ -83,10 +84,11 @@ class Number:
         if isinstance(value, int) and abs(value) >= 1 << INTEGER_BITS:
             raise CheckFailed(f"{where}: expected a finite float, got an integer beyond 64 bits")
         if self.finite and not math.isfinite(value):
-            raise CheckFailed(f"{where}: expected a finite float, got {value}")
+            raise NotFinite(f"{where}: expected a finite float, got {value}")
         if self.above is not None and not value > self.above:
             more = _or_infinity(self.finite)
-            raise CheckFailed(f"{where}: expected a float above {self.above:g}{more}, got {value}")
+            kind = NotFinite if math.isnan(value) else CheckFailed
+            raise kind(f"{where}: expected a float above {self.above:g}{more}, got {value}")
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,13 +12,15 @@ from numpy.typing import ArrayLike
 from ..worker.codec import encode, round_trip
 from ..worker.layouts import without_functions
 from .failures import CheckFailed, GraderFault, StudentFailure, WrongForm
+from .hints import fingerprint
+from .relations import find_relation
+from .situations import lengths_of, situation_of
 from .specs import Spec
 from .tolerance import Tolerance
+from .wording import changed_argument, not_finite, power_of_ten, worst_entry
 
-# Wrong answers that agree to so many digits have the same cause.
-FINGERPRINT_DIGITS = 8
-
-
+# Reasons for no answer that may have to do with the arguments.
+OF_ARGUMENTS = ("raised", "timeout", "died", "output")
 Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
 
 
@@ -40,6 +42,18 @@ class Student(Protocol):
         Args:
             function, args, seconds: as for `call`.
             layout: of the arrays, a name in `worker.layouts.LAYOUTS`.
+        """
+
+    def watch(
+        self, function: str, args: Sequence[Any], puts: Any, *, seconds: float
+    ) -> tuple[Any, Any] | None:
+        """The value in code with probes, and what these saw (`worker.adjoint_trace`).
+
+        None where nothing is watched; raises StudentFailure where no value comes.
+
+        Args:
+            function, args, seconds: as for `call`.
+            puts: what is put back, as `adjoint_evidence.puts_back` makes it, or None.
         """
 
     def cpu_seconds(self) -> float | None:
@@ -96,6 +110,8 @@ class Trial:
         self._verdict: CheckFailed | None = None
         self._module = module
         self._reference = reference
+        self._situation = ""  # of all calls and comparisons, where the check has said it
+        self._args: Sequence[Any] = ()  # of the last call
 
     @property
     def reference(self) -> Any:
@@ -127,8 +143,32 @@ class Trial:
                 what the submission makes of such an exception does not matter.
         """
         value = self._answer(function, args)
-        returns.require(value, function.rpartition(".")[2])
+        with self._said(args):
+            returns.require(value, function.rpartition(".")[2])
         return value
+
+    @contextmanager
+    def situation(self, said: str) -> Iterator[None]:
+        """Failures in this block say for which class of arguments, such as "for one row"."""
+        before, self._situation = self._situation, said
+        try:
+            with self._said():
+                yield
+        finally:
+            self._situation = before
+
+    @contextmanager
+    def _said(self, args: Sequence[Any] = ()) -> Iterator[None]:
+        """A failure tells for which class of arguments; the first that says so is right."""
+        try:
+            yield
+        except CheckFailed as failure:
+            failure.details.setdefault("case", self._situation or situation_of(args))
+            raise
+        except StudentFailure as failure:
+            if failure.reason in OF_ARGUMENTS:
+                failure.case = failure.case or self._situation or situation_of(args)
+            raise
 
     def look(self, function: str, *args: Any, returns: Spec, layout: str = "plain") -> Any:
         """Like `call`, and require that the arguments stay as they were, to the last bit.
@@ -142,23 +182,28 @@ class Trial:
         """
         name = function.rpartition(".")[2]
         value, after = self._answer(function, args, layout)
-        returns.require(value, name)
+        with self._said(args):
+            returns.require(value, name)
         before = round_trip(without_functions(list(args)))
         self.asked += 1
         if encode("args", 0, after) != encode("args", 0, before):
-            raise CheckFailed(f"{name}: changes an argument, which belongs to its caller")
+            which = changed_argument(before, after)
+            text = f"{name}: changes its {which} argument, which belongs to the caller"
+            raise CheckFailed(text, {"explained": True})
         return value
 
     def _answer(self, function: str, args: Sequence[Any], layout: str | None = None) -> Any:
         """What the submission returns, unless a function among ``args`` has given the verdict."""
         where = function if "." in function else f"{self._module}.{function}"
+        self._args = args
         try:
             given = [self._watched(arg) for arg in args]
             seconds = self.check.seconds
-            if layout is None:
-                value = self._student.call(where, given, seconds=seconds)
-            else:
-                value = self._student.look(where, given, seconds=seconds, layout=layout)
+            with self._said(args):
+                if layout is None:
+                    value = self._student.call(where, given, seconds=seconds)
+                else:
+                    value = self._student.look(where, given, seconds=seconds, layout=layout)
         except StudentFailure:
             if self._verdict is not None:
                 raise self._verdict from None
@@ -226,18 +271,27 @@ class Trial:
         self.margins.append(error / bound.relative)
         if error <= bound.relative:  # written so that NaN fails
             return
-        worst = np.unravel_index(int(np.argmax(np.nan_to_num(difference, nan=np.inf))), right.shape)
+        if not np.isfinite(answer).all():
+            raise not_finite(what, answer, right)
+        public = self.check.visibility == "public"
+        relation = find_relation(answer, right, bound.relative, lengths_of(self._args))
+        seen = (relation.text if public else relation.kind) if relation else ""
+        head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
+        worst = np.unravel_index(int(np.argmax(difference)), right.shape)
+        said = worst_entry(answer, right, worst, error, reveal=reveal and public)
         raise CheckFailed(
-            self._sentence(what, error, bound, answer, right, worst, reveal),
+            f"{head}; {said}" + (f". {seen[0].upper()}{seen[1:]}" if seen else ""),
             {
                 "error": error,
                 "tolerance": bound.relative,
                 "worst_index": [int(i) for i in worst],
                 "expected_sign": int(np.sign(right[worst])),
-                "expected_scale": _power_of_ten(right[worst]),
+                "expected_scale": power_of_ten(right[worst]),
+                "relation": relation.kind if relation else "",
+                "explained": relation is not None and relation.explains,
                 "advice": hint,
             },
-            fingerprint(what, answer),
+            fingerprint(what, answer, error),
             (answer, right) if right.ndim else None,
         )
 
@@ -259,58 +313,3 @@ class Trial:
                 raise
             raise CheckFailed(f"{function}: expected {error}, got another exception") from failure
         raise CheckFailed(f"{function}: expected {error}, but it returned")
-
-    def _sentence(
-        self,
-        what: str,
-        error: float,
-        bound: Tolerance,
-        got: Any,
-        right: Any,
-        worst: tuple[Any, ...],
-        reveal: bool,
-    ) -> str:
-        at = f" at index {tuple(int(i) for i in worst)}" if right.ndim else ""
-        head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
-        told = _told_apart(float(got[worst]) + 0.0, float(right[worst]) + 0.0)  # no minus zero
-        if reveal and self.check.visibility == "public":
-            return f"{head}; yours{at} is {told[0]}, expected {told[1]}"
-        mine = f"yours{at} is {float(got[worst]) + 0.0:.6g}"
-        expected = _sign_and_size(float(right[worst]))
-        if expected == _sign_and_size(float(got[worst])):
-            alike = "sign and order of magnitude" if error < 1 else "sign"
-            return f"{head}; {mine}, of the right {alike}, but wrong"
-        return f"{head}; {mine}, expected {expected}"
-
-
-def _told_apart(a: float, b: float) -> tuple[str, str]:
-    """Two numbers with six digits, or with as many more as show that they differ."""
-    for digits in range(6, 18):
-        texts = f"{a:.{digits}g}", f"{b:.{digits}g}"
-        if texts[0] != texts[1]:
-            break
-    return texts
-
-
-def fingerprint(what: str, answer: ArrayLike) -> str:
-    """A short hash of a wrong answer, equal for answers that agree to eight digits."""
-    values = np.asarray(answer, np.float64)
-    finite = np.abs(values[np.isfinite(values)])
-    top = float(finite.max()) if finite.size else 0.0
-    step = top * 10.0**-FINGERPRINT_DIGITS
-    rounded = (np.rint(values / step) if step > 0 else values) + 0.0  # no minus zero
-    size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
-    data = f"{what}|{values.shape}|{size}|".encode() + rounded.astype("<f8").tobytes()
-    return hashlib.sha256(data).hexdigest()[:24]
-
-
-def _sign_and_size(value: float) -> str:
-    """As much as may be said of a hidden value."""
-    sign = {1.0: "positive", -1.0: "negative"}.get(float(np.sign(value)), "zero")
-    return f"something {sign}, of the order {_power_of_ten(value)}" if value else sign
-
-
-def _power_of_ten(value: float) -> str:
-    if not value or not np.isfinite(value):
-        return "0"
-    return f"1e{int(np.floor(np.log10(abs(value)))):+03d}"

@@ -42,6 +42,8 @@ def check_here(
     files: Mapping[str, bytes],
     checks: Sequence[Check],
     on_outcome: Callable[[Outcome, str], None] | None = None,
+    wrong: Mapping[str, str] | None = None,
+    on_refused: Callable[[str], None] | None = None,
 ) -> list[Outcome]:
     """Run `checks` on a submission of this machine's user. The verdict is indicative only.
 
@@ -51,11 +53,15 @@ def check_here(
         checks: those to run.
         on_outcome: called after each with what the submission has printed meanwhile. Nothing is
             read from it: verdicts rest on the frames of another pipe.
+        wrong: functions that are known to be wrong, to what says so; a check that needs one of
+            them and fails is blocked.
+        on_refused: called, before the first outcome, for each import that is not allowed.
     """
     hand = replace(bundle.hand(files), adjoints=adjoint_functions(checks))
     with scratch_folder() as scratch:
         home = install_program(Path(scratch))
         workers: list[WorkerProcess] = []
+        told: set[str] = set()
 
         def tell(outcome: Outcome) -> None:
             if on_outcome is not None:
@@ -66,9 +72,14 @@ def check_here(
             worker = WorkerProcess(plain_command(home), environment=_environment(), cwd=home)
             workers.append(worker)
             worker.request("start", {}, seconds=START_SECONDS)
-            return RemoteStudent(worker, replace(hand, substitutes=dict(substitutes)))
+            student = RemoteStudent(worker, replace(hand, substitutes=dict(substitutes)))
+            for said in student.refused:
+                if on_refused is not None and said not in told:
+                    on_refused(said)
+                told.add(said)
+            return student
 
-        return run_checks(checks, bundle.setting, open_student, on_outcome=tell)
+        return run_checks(checks, bundle.setting, open_student, on_outcome=tell, wrong=wrong)
 
 
 def _environment() -> dict[str, str]:

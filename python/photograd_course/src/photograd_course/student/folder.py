@@ -10,7 +10,9 @@ from typing import Any
 from ..assignment.manifest import Manifest
 from ..assignment.questions import flat_answers
 from ..assignment.toml import read_toml
+from ..build.kits import list_manifests
 from ..errors import IoError, message
+from .origins import belongs_to_later
 
 LOCK_NAME = "predictions.lock.json"
 LARGEST_FILE = 200 << 10  # bytes; more is no program written by hand
@@ -84,14 +86,25 @@ class WorkFolder:
 def find_folder(manifest: Manifest, given: Path | None = None) -> WorkFolder:
     """The folder given, else this one if the graded module lies in it, else the kit's below it.
 
+    Args:
+        manifest: of the assignment.
+        given: by --dir, or None.
+
     Raises:
-        IoError: no such folder.
+        IoError: no such folder, or only that of a later assignment, which holds a copy.
     """
     here = Path.cwd()
     candidates = [here, here / manifest.folder_name] if given is None else [given]
     for candidate in candidates:
-        if (candidate / f"{manifest.module}.py").is_file():
+        if not (candidate / f"{manifest.module}.py").is_file():
+            continue
+        later = belongs_to_later(candidate.resolve(), manifest, list_manifests())
+        if later is None:
             return WorkFolder(candidate, manifest)
+        expected = f"the folder of assignment {manifest.id}"
+        found = f"that of {later.id}, whose {manifest.module}.py is a copy"
+        remedy = f"go to the folder of {manifest.id}, or give it with --dir"
+        raise IoError(message("photograd course", str(candidate), expected, found, remedy))
     remedy = f"run 'photograd course start {manifest.id}' first, or give the folder with --dir"
     expected = f"a folder with {manifest.module}.py"
     raise IoError(message("photograd course", str(candidates[0]), expected, "none", remedy))

@@ -21,5 +21,5 @@ def next_steps(bundle: Bundle, archive: str) -> list[str]:
     if later:
         manifest = find_kit(later[0]).manifest
         command = f"photograd course start {manifest.id}"
-        lines.append(f"Then: {command}   ({manifest.title}, {manifest.hours:g} hours)")
+        lines.append(f"Then: {command}   ({manifest.title}, an estimated {manifest.hours:g} hours)")
     return lines

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..atomic_io import atomic_write
 from ..build.kits import Kit, source_root
 from ..build.page.page import handout_page, with_figures
 from ..build.public import PAGE, glossary
 from ..errors import IoError, message
 from .folder import find_folder
+from .kept import write_keeping
 
 TOOLS = ("latex2mathml", "markdown_it", "mdit_py_plugins")
 
@@ -35,6 +35,8 @@ def kit_page(files: Mapping[str, bytes]) -> bytes | None:
 def page_to_read(kit: Kit, given: Path | None) -> Path:
     """Where the page lies: in the student's folder, else written into this one.
 
+    Another page of that name, perhaps with notes in it, is kept beside the new one.
+
     Args:
         kit: of the assignment.
         given: the student's folder; by default this one, or that of the kit below it.
@@ -55,4 +57,5 @@ def page_to_read(kit: Kit, given: Path | None) -> Path:
         remedy = "pip install 'photograd-course[handouts]', or read README.md"
         found = "none of its makers" if "README.md" in kit.files else "no handout"
         raise IoError(message("read", kit.manifest.id, "a page", found, remedy))
-    return atomic_write(target, page)
+    write_keeping(target, page)
+    return target

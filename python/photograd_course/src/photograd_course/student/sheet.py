@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
-from typing import Any
 
 from ..assignment.bundle import Bundle
 from ..assignment.drawing import draw
@@ -14,6 +12,7 @@ from ..atomic_io import atomic_write
 from ..errors import SceneError
 from .folder import LOCK_NAME, WorkFolder
 from .predictions import locked_answers
+from .record import read_table
 
 SHOWN_NAME = "questions.shown.json"  # which draw was last looked at
 REDRAWN = (
@@ -64,12 +63,15 @@ def remember_shown(bundle: Bundle, work: WorkFolder) -> None:
 
 
 def notes_before_submission(bundle: Bundle, work: WorkFolder) -> list[str]:
-    """What the student should know before submissiong in; one sentence each."""
+    """What the student should know before submitting; one sentence each."""
     student, answers = work.answers()
     notes = []
     if bundle.questions and not student:
         notes.append("answers.toml: student is empty; write your name")
     locked = _locked(bundle, work)
+    if (work.path / LOCK_NAME).exists() and not locked:
+        remedy = "put back the file that 'check' wrote, or ask your instructor"
+        notes.append(f"{LOCK_NAME}: damaged or of another assignment, so earns nothing; {remedy}")
     opened = []
     for question in bundle.questions:
         answer = str(answers.get(question.id, "")).strip()
@@ -122,13 +124,5 @@ def _draws(bundle: Bundle, work: WorkFolder) -> dict[str, str]:
 
 def _changed(bundle: Bundle, work: WorkFolder) -> list[str]:
     """Generated questions whose numbers are not those last shown."""
-    seen = _read(work.path / SHOWN_NAME)
+    seen = read_table(work.path / SHOWN_NAME)
     return [name for name, values in _draws(bundle, work).items() if seen.get(name) != values]
-
-
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        table = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return table if isinstance(table, dict) else {}

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..build.kits import PACKAGE
+from ..build.kits import ENVIRONMENT, PACKAGE
 from ..worker.modes import probe
 
 STRICT = ("A", "B", "C")
@@ -21,9 +21,10 @@ MOST_UNSTAGED = 4  # attacks that may lack a positive control
 PROGRAM = """
 import json, sys
 from course.attacks.attack import read_attacks
-from course.attacks.controls import has_naive_control, run_control
+from course.attacks.controls import has_naive_control, require_naive_grader, run_control
 from course.attacks.suite import run_suite
 
+require_naive_grader()
 attacks = read_attacks()
 naive = {a.name: bool(run_control(a)[0]) for a in attacks if has_naive_control(a)}
 tokens = [a.name for a in attacks if a.control["kind"] == "token"]
@@ -74,7 +75,10 @@ def summary(found: dict[str, Any]) -> dict[str, Any]:
         ran -= {name for name in ran if not result["results"].get(name, {}).get("ran")}
     unstaged = [name for name in names if name not in staged | ran]
     if len(unstaged) > MOST_UNSTAGED:
-        findings.append(f"attacks: {len(unstaged)} without positive control: {unstaged[:8]}")
+        findings.append(
+            f"attacks: {len(unstaged)} were not seen to work where nothing isolates, so that their "
+            f"failing proves nothing: {', '.join(unstaged[:8])}"
+        )
     if not names or not modes:
         findings.append("attacks: none ran")
     return {
@@ -90,13 +94,15 @@ def summary(found: dict[str, Any]) -> dict[str, Any]:
 
 def _run(tests: Path, modes: Sequence[str]) -> dict[str, Any]:
     path = os.pathsep.join([str(tests), str(tests.parent)])
+    # The attacks are on the grader, with an assignment of their own, whichever course is examined.
+    environment = {name: value for name, value in os.environ.items() if name != ENVIRONMENT}
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, *modes],
         capture_output=True,
         text=True,
         check=False,
         timeout=LONGEST,
-        env={**os.environ, "PYTHONPATH": path},
+        env={**environment, "PYTHONPATH": path},
     )
     if done.returncode:
         raise ValueError(done.stderr.strip()[-600:] or f"exit status {done.returncode}")

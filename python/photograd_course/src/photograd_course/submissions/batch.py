@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 from ..assignment.bundle import Bundle
 from ..printable import csv_cell
-from .exports import Source
-from .grades_csv import Change, changes, changes_table, grades_table
+from .exports import Ignored
+from .grades_csv import Change, changes, changes_table, grades_table, ignored_table
 from .load import Loaded
 from .one import Case, grade_guarded, grade_one
 from .report import Report
 from .run_folder import RunFolder
 from .similarity import similar_pairs
+from .source import Source
 from .submission import Submission
 from .workers import Workers
 
@@ -34,6 +35,7 @@ class Batch:
         workers: where to run them; None where no isolation mode is good enough.
         unavailable: why not; for staff.
         jobs: how many at the same time.
+        ignored: what lies beside the submissions and is none.
     """
 
     sources: Sequence[Source]
@@ -41,6 +43,7 @@ class Batch:
     workers: Workers | None
     unavailable: str = ""
     jobs: int = 1
+    ignored: Sequence[Ignored] = ()
 
 
 def run_batch(
@@ -67,7 +70,8 @@ def run_batch(
     if differences is not None:
         folder.write("changes.csv", changes_table(differences))
     folder.write("similarity.csv", _similarity(batch, bundle))
-    folder.write("grades.csv", grades_table(reports, earlier))
+    folder.write("ignored.csv", ignored_table(batch.ignored))
+    folder.write("grades.csv", grades_table(reports, earlier, batch.sources))
     folder.mark(facts, "done")
     return reports, differences
 

@@ -2,8 +2,9 @@
 
 A wrong answer to a hidden check can be made of its input: an exception's name, the value at the
 worst index, a shape, even the size of an error. From hidden checks nothing is said that a
-submission could have written, numbers but for an order of magnitude included; from secret ones
-nothing at all.
+submission could have written, numbers but for an order of magnitude included. What is said besides
+is one of a few sentences: how all values relate to the right ones (`grading.relations`, without
+numbers), and the class of the arguments. From secret checks nothing is said at all.
 """
 
 from __future__ import annotations
@@ -27,6 +28,9 @@ _SENTENCES = {
     "timeout": "no answer within the time allowed",
     "died": "the process ended (a crash, an exit, or out of memory)",
     "broken": "the file does not import",
+    # Seen at run time, in the worker: its words could be the submission's.
+    "computed": "a derivative is computed (by differences, complex steps, a fit, dual numbers): "
+    "write it",
 }
 STAFF_TEXT = "the grader itself failed here; staff have been told, and no points are lost by it"
 
@@ -53,6 +57,12 @@ def magnitude(value: float) -> float:
 
 
 def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
+    """The sentence; the classes of arguments are the grader's words, and few."""
+    text, case = _without_class(outcome, details), outcome.details.get("case")
+    return f"{text} ({case})" if case and case not in text else text
+
+
+def _without_class(outcome: Outcome, details: dict[str, Any]) -> str:
     if outcome.reason in ("wrong", "cost"):
         return _wrong(outcome, details)
     if outcome.reason in _HARMLESS:
@@ -64,6 +74,8 @@ def _wrong(outcome: Outcome, details: dict[str, Any]) -> str:
     if "error" in details and "tolerance" in details:
         what = outcome.text.split(": relative error")[0]
         size = "1 or more" if details["error"] >= 1 else f"about {details['error']:.0e}"
-        return f"{what}: relative error {size}, allowed {details['tolerance']:.0e}"
+        relation = outcome.details.get("relation")  # one of few sentences without a number
+        seen = f"; {relation}" if relation else ""
+        return f"{what}: relative error {size}, allowed {details['tolerance']:.0e}{seen}"
     kept = outcome.text.split(", got ")[0].split("; yours")[0]
     return _NUMBER.sub("\N{HORIZONTAL ELLIPSIS}", kept)

@@ -16,7 +16,7 @@ from ..build.evidence import evidence
 from ..build.kits import no_sources, source_folders
 from ..errors import Error
 from ..grading.outcome import Status
-from ..worker.modes import probe
+from ..worker.modes import note, probe
 from .attack_evidence import attack_evidence
 from .load import load
 from .one import Case, grade_one
@@ -55,7 +55,7 @@ def examine(
     if not folders:
         findings.append(str(no_sources("doctor", "assignments")))
     sound = bool(folders) and all(each["ok"] for each in (*assignments, attacks))
-    modes = {mode: reason or "works" for mode, reason in probe().items()}
+    modes = {mode: reason or _works(mode) for mode, reason in probe().items()}
     return {
         "ok": sound and not findings,
         "complete": not quick,
@@ -64,6 +64,12 @@ def examine(
         "assignments": assignments,
         "attacks": attacks,
     }
+
+
+def _works(mode: str) -> str:
+    """That it does, and which of its layers are weaker here than they might be."""
+    weaker = note(mode) if mode != "E" else ""  # E has no layers
+    return f"works; {weaker}" if weaker else "works"
 
 
 def examine_assignment(folder: Path, root: Path | None = None) -> dict[str, Any]:

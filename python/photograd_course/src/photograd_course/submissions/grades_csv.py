@@ -12,7 +12,10 @@ from typing import Any
 
 from ..grading.outcome import Status
 from ..printable import csv_cell, file_name
+from .exports import Ignored
 from .report import Report
+from .said_once import said_once
+from .source import Source
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,9 @@ class Change:
     checks: tuple[str, ...]
 
 
-def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> bytes:
+def grades_table(
+    reports: Sequence[Report], earlier: Mapping[str, Report], sources: Sequence[Source] = ()
+) -> bytes:
     """One row a student, by name; nothing in it depends on when or in what order it was graded.
 
     A score is empty, not zero, where the grader failed and no earlier points can stand in.
@@ -39,17 +44,22 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
     Args:
         reports: of this run.
         earlier: of the run before, by student.
+        sources: the submissions, where names, ids and late marks of an export are known.
     """
-    head = ["student", "assignment", "score", "max_score", "status", "mode", "page", "submission"]
+    known = {source.student: source for source in sources}
+    alike = Counter((source.name, source.id) for source in sources)
+    head = ["student", "id", "email", "late", "assignment", "score", "max_score", "status"]
+    head += ["mode", "page", "submission"]
     ids = list(reports[0].points) if reports else []
     rows: list[list[Any]] = [[*head, *ids, "notes"]]
     declared = Counter(report.declared for report in reports if report.declared)
     for report in sorted(reports, key=lambda each: each.student):
         score, status = counted(report, earlier.get(report.student))
         points = report.points
+        source = known.get(report.student)
         rows.append(
             [
-                report.student,
+                *_who(report, source, alike),
                 report.assignment,
                 "" if score is None else score,
                 report.max_score,
@@ -61,11 +71,19 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
                 "; ".join(_notes(report, declared)),
             ]
         )
-    return _csv(rows)
+    return csv_table(rows)
+
+
+def _who(report: Report, source: Source | None, alike: Mapping[tuple[str, str], int]) -> list[str]:
+    if source is None:
+        return [report.student, "", "", ""]
+    name = source.name if alike[source.name, source.id] == 1 else report.student
+    return [name, source.id, source.email, "yes" if source.is_late else ""]
 
 
 def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
-    notes = [*report.remarks, *(f"staff: {note}" for note in report.staff)]
+    faults = said_once(report.checks, report.remarks).faults if report.is_sound else ()
+    notes = [*faults, *report.remarks, *(f"staff: {note}" for note in report.staff)]
     if declared.get(report.declared, 0) > 1:  # whose questions, and so whose answers, are these?
         notes.append(f"staff: answers.toml names {report.declared}, as another submission does")
     return notes
@@ -76,6 +94,10 @@ def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
 
     Where we failed, a check or question keeps the points that the same submission had for it
     before; all others count as they are now. Another submission's points stand for nothing.
+
+    Args:
+        report: of this run.
+        earlier: of the run before, on the same student.
     """
     if report.is_sound:
         return report.score, "submission refused" if report.problem else "ok"
@@ -89,7 +111,12 @@ def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
 
 
 def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Change]:
-    """Who changes, and by which check; also who is new or gone."""
+    """Who changes, and by which check; also who is new or gone.
+
+    Args:
+        reports: of this run.
+        earlier: of the run before, by student.
+    """
     found = []
     now = {report.student: report for report in reports}
     for student in sorted({*now, *earlier}):
@@ -103,12 +130,18 @@ def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Ch
 
 
 def changes_table(found: Sequence[Change]) -> bytes:
-    """The differences as a table."""
+    """The differences that were `found`, as a table."""
     rows: list[list[Any]] = [["student", "before", "after", "checks"]]
     for change in found:
         scores = ["" if s is None else s for s in (change.before, change.after)]
         rows.append([change.student, *scores, "; ".join(change.checks)])
-    return _csv(rows)
+    return csv_table(rows)
+
+
+def ignored_table(ignored: Sequence[Ignored]) -> bytes:
+    """The `ignored` entries, which are no submissions, and why."""
+    rows: list[list[Any]] = [["entry", "reason"]]
+    return csv_table([*rows, *([each.name, each.reason] for each in ignored)])
 
 
 def page_name(student: str) -> str:
@@ -133,7 +166,8 @@ def _verdicts(report: Report) -> dict[str, str]:
     return {**checks, **{q.id: f"{q.status} {q.points:g}" for q in report.questions}}
 
 
-def _csv(rows: Sequence[Sequence[Any]]) -> bytes:
+def csv_table(rows: Sequence[Sequence[Any]]) -> bytes:
+    """A table of these `rows` as bytes, in which no cell is a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_MINIMAL)
     writer.writerows([csv_cell(cell) for cell in row] for row in rows)

@@ -1,127 +1,139 @@
-"""Take a submission into memory from a zip, a folder or single files. Nothing is ever unpacked."""
+"""Take a submission into memory from an archive, a folder or single files; nothing is unpacked."""
 
 from __future__ import annotations
 
-import io
-import os
 import re
-import stat
-import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from ..assignment.manifest import Manifest
-from .listing import MOST_ENTRIES, NOISE, Entry, choose
-from .submission import Submission, refused, wanted_names
+from ..printable import printable
+from .containers import file_entry, is_archive, is_unread_archive, open_archive, walk_folder
+from .listing import Entry, choose, key_of, last_of
+from .submission import Refused, Submission, missing_module, refused, wanted_names
 
-LARGEST_ZIP = 16 << 20  # bytes on disk; the files of an assignment are a hundredth of it
-_PLAIN_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
-_READ_ONLY = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+DEEPEST_ARCHIVE = 2  # an archive within an archive is looked into, one within that is not
+DOCUMENTS = (".docx", ".doc", ".odt", ".rtf", ".pdf", ".gdoc", ".pages", ".txt", ".html", ".md")
+_COPY = re.compile(r"(?:-\d{1,3}| ?\(\d{1,3}\))(?=\.[A-Za-z]+$)")
 
 
 def take(manifest: Manifest, path: Path) -> Submission:
-    """Whatever lies at ``path``, a zip, a folder or the graded module itself.
+    """Whatever lies at ``path``: an archive, a folder or the graded module itself.
 
     Never raises for what a submission holds: the result's `problem` says what is wrong with it.
+    The ``manifest`` names the files that are taken.
     """
     try:
-        kind = path.lstat().st_mode
-        if stat.S_ISDIR(kind):
-            return _take_folder(manifest, path)
-        if not stat.S_ISREG(kind):
+        entry = file_entry(path.name, path)
+        if entry.kind == "folder":
+            return take_entries(manifest, walk_folder(path))
+        if entry.kind != "file":
             return refused(f"{path.name} is no plain file")
-        if path.suffix.lower() == ".py":
-            return take_parts(manifest, {path.name: path})
-        return take_zip(manifest, path)
+        return take_entries(manifest, [entry])
     except OSError as error:
         return refused(f"{path.name} cannot be read: {error.strerror or error}")
 
 
-def take_parts(manifest: Manifest, parts: Mapping[str, Path]) -> Submission:
-    """Single files, named as their student named them; one zip among them stands for all.
+def take_entries(manifest: Manifest, entries: Sequence[Entry]) -> Submission:
+    """The submission among entries; where it is one archive, the submission in that.
 
-    Canvas puts "-1" behind the name of a file that is handed in again; that is undone.
+    Never raises for what a submission holds.
+
+    Args:
+        manifest: of the assignment.
+        entries: all that was handed in, names as the student gave them.
     """
-    zips = [path for name, path in parts.items() if name.lower().endswith(".zip")]
-    if len(parts) == 1 and zips:
-        return take_zip(manifest, zips[0])
-    entries = [_file_entry(_as_wanted(manifest, name), path) for name, path in parts.items()]
-    return choose(manifest, entries)
-
-
-def take_zip(manifest: Manifest, path: Path) -> Submission:
-    """The files of a zip archive, read one by one against their limits."""
     try:
-        if path.stat().st_size > LARGEST_ZIP:
-            return refused(f"{path.name} is larger than {LARGEST_ZIP >> 20} MB")
-        # A copy in memory: what is looked at is what is read, even if the file changes meanwhile.
-        with zipfile.ZipFile(io.BytesIO(path.read_bytes())) as archive:
-            entries = [_zip_entry(archive, info) for info in archive.infolist()]
-            return choose(manifest, entries)
-    except Exception as error:  # zipfile answers damage with a dozen types
-        return refused(f"{path.name} is no readable zip archive: {type(error).__name__}")
+        return _taken(manifest, entries, 0)
+    except Refused as error:
+        return refused(str(error))
+    except OSError as error:
+        return refused(f"the submission cannot be read: {error.strerror or error}")
 
 
-def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Entry:
-    def read(limit: int) -> bytes:
-        with archive.open(info) as file:
-            return file.read(limit)
-
-    name = info.orig_filename.replace("\\", "/")  # some Windows programs write backslashes
-    unix = info.external_attr >> 16 if info.create_system == 3 else 0
-    kind = _kind(unix) if stat.S_IFMT(unix) else "folder" if name.endswith("/") else "file"
-    if kind == "file" and info.flag_bits & 0x1:
-        kind = "encrypted file"
-    if kind == "file" and info.compress_type not in _PLAIN_METHODS:
-        kind = "file of an unusual compression"
-    return Entry(name.removesuffix("/"), kind, info.file_size, read)
-
-
-def _take_folder(manifest: Manifest, folder: Path) -> Submission:
-    entries: list[Entry] = []
-    for parent, folders, files in os.walk(folder, followlinks=False):
-        for name in sorted([*folders, *files]):
-            path = Path(parent) / name
-            entries.append(_file_entry(path.relative_to(folder).as_posix(), path))
-        folders[:] = sorted(name for name in folders if name.lower() not in NOISE)
-        if len(entries) > MOST_ENTRIES:
-            break
-    zips = [entry for entry in entries if entry.name.lower().endswith(".zip")]
-    others = [entry for entry in entries if entry not in zips and entry.kind != "folder"]
-    if len(zips) == 1 and zips[0].kind == "file" and not _any_wanted(manifest, others):
-        return take_zip(manifest, folder / zips[0].name)
-    return choose(manifest, entries)
+def _taken(manifest: Manifest, entries: Sequence[Entry], depth: int) -> Submission:
+    if _has_module(manifest, entries):
+        return choose(manifest, entries)
+    archives = [entry for entry in _own_files(entries) if is_archive(entry.name)]
+    if len(archives) > 1:
+        names = ", ".join(entry.name for entry in archives[:4])
+        raise Refused(f"there are several archives ({names}) and no order: keep one")
+    if archives and depth < DEEPEST_ARCHIVE:
+        beside = [each for each in _own_files(entries) if each is not archives[0]]
+        inner, left = _joined(manifest, open_archive(archives[0]), beside)
+        taken = _taken(manifest, inner, depth + 1)
+        return replace(taken, ignored=(*taken.ignored, *left))
+    taken = choose(manifest, entries)
+    if taken.problem == missing_module(manifest):
+        taken = replace(taken, problem=_what_is_there(manifest, entries))
+    return taken
 
 
-def _any_wanted(manifest: Manifest, entries: list[Entry]) -> bool:
-    names = {name.casefold() for name in wanted_names(manifest)}
-    return any(entry.name.rpartition("/")[2].casefold() in names for entry in entries)
+def _joined(
+    manifest: Manifest, inner: list[Entry], beside: Sequence[Entry]
+) -> tuple[list[Entry], list[str]]:
+    """What an archive holds, with files of the assignment that it lacks and that lie beside it."""
+    module = key_of(f"{manifest.module}.py")
+    tops = [each.name for each in inner if key_of(last_of(each.name)) == module]
+    folder = tops[0].removesuffix(last_of(tops[0])) if len(tops) == 1 else ""
+    there = {key_of(each.name) for each in inner}
+    wanted = {key_of(name) for name in wanted_names(manifest)}
+    added: list[Entry] = []
+    left: list[str] = []
+    for each in beside:
+        if key_of(each.name) not in wanted:
+            left.append(printable(f"{each.name}: not a file of this assignment", 160))
+        elif key_of(folder + each.name) in there:
+            left.append(f"{each.name}: lies beside an archive whose own counts")
+        else:
+            added.append(replace(each, name=folder + each.name))
+    return [*inner, *added], left
 
 
-def _file_entry(name: str, path: Path) -> Entry:
-    status = path.lstat()
-    return Entry(name, _kind(status.st_mode), status.st_size, _reader(path))
+def as_wanted(manifest: Manifest, name: str) -> str:
+    """The name that a file had before a learning system or a browser put "-1" or " (1)" behind it.
 
-
-def _reader(path: Path) -> Callable[[int], bytes]:
-    def read(limit: int) -> bytes:
-        # Looked at again once open, since a name may stand for another file by now.
-        with os.fdopen(os.open(path, _READ_ONLY | getattr(os, "O_BINARY", 0)), "rb") as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                return b""
-            return file.read(limit)
-
-    return read
-
-
-def _kind(mode: int) -> str:
-    if stat.S_ISREG(mode):
-        return "file"
-    if stat.S_ISDIR(mode):
-        return "folder"
-    return "link" if stat.S_ISLNK(mode) else "device"
-
-
-def _as_wanted(manifest: Manifest, name: str) -> str:
-    plain = re.sub(r"-\d{1,3}(?=\.[a-z]+$)", "", name)
+    Only where that makes it a name of the assignment's, which its ``manifest`` lists.
+    """
+    plain = _COPY.sub("", name)
     return plain if plain in wanted_names(manifest) else name
+
+
+def _has_module(manifest: Manifest, entries: Sequence[Entry]) -> bool:
+    module = key_of(f"{manifest.module}.py")
+    return any(key_of(last_of(entry.name)) == module for entry in entries)
+
+
+def _own_files(entries: Sequence[Entry]) -> list[Entry]:
+    """Files, without what operating systems add."""
+    plain = [entry for entry in entries if "file" in entry.kind]
+    return [
+        each
+        for each in plain
+        if not any(part.startswith(("._", "__MACOSX")) for part in each.name.split("/"))
+    ]
+
+
+def _what_is_there(manifest: Manifest, entries: Sequence[Entry]) -> str:
+    """Why a submission without the graded module cannot be judged, by what it holds instead."""
+    module = f"{manifest.module}.py"
+    missing = f"there is no {module} in the submission"
+    files = _own_files(entries)
+    if not files and not any(entry.kind in ("link", "device") for entry in entries):
+        return f"{missing}, which is empty: hand in a file of this name"
+    for entry in files:
+        name = last_of(entry.name)
+        lower = name.lower()
+        if lower.endswith(".ipynb"):
+            return f"{missing}: {name} is a notebook, hand in {module} itself"
+        if is_unread_archive(name) or is_archive(name):
+            return f"{missing}: {name} is an archive that is not read, hand in a zip of {module}"
+        if lower.endswith((".py", ".pyw", ".py.txt")):
+            return f"{missing}, but {name}: rename it to {module}"
+        if lower.endswith(DOCUMENTS) and not lower.startswith("readme"):
+            return f"{missing}: {name} is a document, hand in {module} itself, not converted"
+    for entry in entries:
+        if entry.kind in ("link", "device"):
+            return f"{missing}: {entry.name} is a {entry.kind}, not a plain file or folder"
+    return missing_module(manifest)

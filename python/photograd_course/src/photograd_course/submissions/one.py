@@ -23,6 +23,7 @@ from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from ..printable import printable
 from .answers import Answered, all_answered, plain_answers, score_answers
+from .earlier import setting_with_earlier
 from .report import Report, staff_notes, versions
 from .submission import Submission
 from .workers import Budget, Clocked, Workers
@@ -66,8 +67,11 @@ def grade_one(
         on_outcome: called after each check.
     """
     started = time.monotonic()
-    checks = _judge(case, workers, slot, unavailable, on_outcome)
-    return _report(case, workers, checks, _answers(case), started)
+    refused: dict[str, None] = {}
+    checks = _judge(case, workers, slot, unavailable, on_outcome, refused)
+    answered, declared, warnings = _answers(case)
+    warnings = [*map(printable, refused), *warnings]
+    return _report(case, workers, checks, (answered, declared, warnings), started)
 
 
 def grade_guarded(case: Case, workers: Workers | None, grade: Callable[[], Report]) -> Report:
@@ -126,12 +130,18 @@ def _report(
         checks=tuple(checks),
         questions=tuple(answered),
         problem=case.submission.problem,
-        warnings=(*case.submission.warnings, *warnings),
+        warnings=(*case.submission.warnings, *warnings, *_otherwise(checks)),
         ignored=case.submission.ignored,
         staff=staff_notes(checks, answered),
         versions=versions(),
         seconds=time.monotonic() - started,
     )
+
+
+def _otherwise(checks: Sequence[Outcome]) -> list[str]:
+    """What behaves otherwise while its derivative is watched: no verdict, but worth a look."""
+    said = (str(check.details.get("otherwise", "")) for check in checks)
+    return [f"{each}: what it computes was not seen" for each in dict.fromkeys(said) if each]
 
 
 def time_allowed(bundle: Bundle) -> float:
@@ -140,14 +150,19 @@ def time_allowed(bundle: Bundle) -> float:
 
 
 def _judge(
-    case: Case, workers: Workers | None, slot: int, unavailable: str, on_outcome: OnOutcome | None
+    case: Case,
+    workers: Workers | None,
+    slot: int,
+    unavailable: str,
+    on_outcome: OnOutcome | None,
+    refused: dict[str, None],
 ) -> list[Outcome]:
     if workers is None:
         return _all(case, Status.ERROR_OURS, "error-ours", unavailable, on_outcome)
     if case.submission.problem:
         return _all(case, Status.FAILED, "submission", case.submission.problem, on_outcome)
     try:
-        return _run(case, workers, slot, on_outcome)
+        return _run(case, workers, slot, on_outcome, refused)
     except IoError:
         raise  # from writing results: nothing that is judged from here on could be kept
     except Exception as error:  # ours, whatever it is; the next submission still gets its turn
@@ -155,7 +170,10 @@ def _judge(
         return _all(case, Status.ERROR_OURS, "error-ours", said, on_outcome)
 
 
-def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:
+def _run(
+    case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None, refused: dict[str, None]
+) -> list[Outcome]:
+    """The outcomes; `refused` gets a sentence for each import that is not allowed."""
     bundle = case.bundle
     adjoints = adjoint_functions(bundle.checks)
     hand = replace(bundle.hand(case.submission.files), adjoints=adjoints)
@@ -166,7 +184,9 @@ def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) 
             said = f"the {time_allowed(bundle):g} seconds for this submission were used up before"
             raise StudentFailure("timeout", said)
         connection = Clocked(workers.open(slot), budget)
-        return RemoteStudent(connection, replace(hand, substitutes=dict(substitutes)))
+        student = RemoteStudent(connection, replace(hand, substitutes=dict(substitutes)))
+        refused.update(dict.fromkeys(student.refused))
+        return student
 
     def open_control() -> Student:
         solution = bundle.hand(bundle.solution_files(bundle.solution))
@@ -174,7 +194,7 @@ def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) 
 
     found = run_checks(
         bundle.checks,
-        bundle.setting,
+        setting_with_earlier(bundle, case.submission.files),
         open_student,
         open_control=open_control if bundle.solution else None,
         on_outcome=on_outcome,

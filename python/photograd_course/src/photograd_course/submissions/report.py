@@ -137,10 +137,19 @@ class Report:
 
 
 def staff_notes(checks: Sequence[Outcome], questions: Sequence[Answered]) -> tuple[str, ...]:
-    """One line for each of our own failures."""
+    """One line for each of our own failures, whichever checks and questions it hit."""
     ours = Status.ERROR_OURS.value
-    notes = [f"{each.id}: {each.text}" for each in checks if each.status.value == ours]
-    return (*notes, *(f"{each.id}: {each.text}" for each in questions if each.status == ours))
+    failed = [(each.id, each.text) for each in checks if each.status.value == ours]
+    failed += [(each.id, each.text) for each in questions if each.status == ours]
+    hit: dict[str, list[str]] = {}
+    for name, text in failed:
+        hit.setdefault(text, []).append(name)
+    return tuple(f"{_counted(names)}: {text}" for text, names in hit.items())
+
+
+def _counted(names: Sequence[str]) -> str:
+    more = len(names) - 1
+    return names[0] if not more else f"{names[0]} and {more} more"
 
 
 def versions() -> dict[str, str]:

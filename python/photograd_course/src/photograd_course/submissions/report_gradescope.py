@@ -2,7 +2,8 @@
 
 Hidden checks show after publication, secret ones never. A file that is there early counts what has
 been proven so far; the rest stands at 0 and is overwritten by the next write. Where the grader
-itself fails, the best earlier score stays.
+itself fails, the best earlier score stays; without one, no score is written at all, since
+Gradescope records whatever number it finds. It then reports that the autograder failed.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..printable import markdown
 from .answers import Answered
 from .disclosure import STAFF_TEXT, for_student
 from .report import Report
+from .said_once import said_once
 
 VISIBILITY = {"public": "visible", "hidden": "after_published", "secret": "hidden"}
 
@@ -28,7 +30,7 @@ class ResultsFile:
     """Keeps `results.json` up to date while a submission is graded."""
 
     def __init__(self, path: Path, bundle: Bundle, earlier: float | None = None) -> None:
-        """Write it at once, with every check at 0, so that a broken run is no missing file.
+        """Write it at once, without a score, so that a broken run is neither a gap nor a zero.
 
         Args:
             path: of `results.json`.
@@ -52,10 +54,10 @@ class ResultsFile:
 
     def _write_partial(self) -> None:
         tests = [_waiting(check) for check in self._bundle.checks if check.id not in self._done]
-        tests = [_test(outcome) for outcome in self._done.values()] + tests
-        proven = sum(outcome.points for outcome in self._done.values())
+        tests = [_test(for_student(outcome)) for outcome in self._done.values()] + tests
+        proven = sum(outcome.points for outcome in self._done.values()) if self._done else None
         text = "Grading is still going on, or was cut off; what follows has been proven so far."
-        self._write(_frame(max(proven, self._earlier or 0.0), text, tests, 0.0))
+        self._write(_frame(_best(proven, self._earlier), text, tests, 0.0))
 
     def _write(self, results: Mapping[str, Any]) -> None:
         atomic_write(self._path, (json.dumps(results, indent=1) + "\n").encode())
@@ -63,12 +65,13 @@ class ResultsFile:
 
 def as_results(report: Report, earlier: float | None = None) -> dict[str, Any]:
     """The whole `results.json` of a report."""
-    tests = [_test(outcome) for outcome in report.checks]
+    once = said_once(report.checks, report.remarks, for_student)
+    tests = [_test(shown) for shown in once.checks]
     tests += [_question(question) for question in report.questions]
-    lines = [markdown(remark) for remark in report.remarks]
-    score = report.proven
+    lines = [markdown(remark) for remark in (*once.faults, *report.remarks)]
+    score: float | None = report.proven
     if not report.is_sound:
-        score = max(score, earlier or 0.0)
+        score = None if earlier is None else max(report.proven, earlier)
         lines.insert(0, STAFF_TEXT)
     lines.append(f"Isolation mode {report.mode}, submission {report.submission[:12]}")
     results = _frame(score, "\n\n".join(lines), tests, report.seconds)
@@ -91,11 +94,18 @@ def best_earlier(metadata: Path) -> float | None:
     return max(scores, default=None)
 
 
+def _best(proven: float | None, earlier: float | None) -> float | None:
+    return max((each for each in (proven, earlier) if each is not None), default=None)
+
+
 def _frame(
-    score: float, output: str, tests: Sequence[Mapping[str, Any]], seconds: float
+    score: float | None, output: str, tests: Sequence[Mapping[str, Any]], seconds: float
 ) -> dict[str, Any]:
+    """The file's top level; without a score the tests have none either, or they would be summed."""
+    hidden = () if score is not None else ("score", "max_score")
+    shown = [{key: test[key] for key in test if key not in hidden} for test in tests]
     return {
-        "score": score,
+        **({} if score is None else {"score": score}),
         "execution_time": round(seconds),
         "output": output,
         "output_format": "md",
@@ -103,24 +113,23 @@ def _frame(
         "test_name_format": "text",
         "visibility": "visible",
         "stdout_visibility": "hidden",
-        "tests": [{**test, "number": str(k + 1)} for k, test in enumerate(tests)],
+        "tests": [{**test, "number": str(k + 1)} for k, test in enumerate(shown)],
     }
 
 
-def _test(outcome: Outcome) -> dict[str, Any]:
-    shown = for_student(outcome)
+def _test(shown: Outcome) -> dict[str, Any]:
     lines = [markdown(shown.text)] if shown.text else []
     if said := shown.details.get("exception"):
         lines.append(markdown(said))
     if shown.hint:
         lines.append(f"Hint: {markdown(shown.hint)}")
     return {
-        "name": f"{outcome.id} {outcome.title}",
-        "score": outcome.points,
-        "max_score": outcome.max,
-        "status": "passed" if outcome.status is Status.PASSED else "failed",
+        "name": f"{shown.id} {shown.title}",
+        "score": shown.points,
+        "max_score": shown.max,
+        "status": "passed" if shown.status is Status.PASSED else "failed",
         "output": "\n\n".join(lines),
-        "visibility": VISIBILITY[outcome.visibility],
+        "visibility": VISIBILITY[shown.visibility],
     }
 
 

@@ -13,6 +13,7 @@ from ..printable import printable
 from .answers import Answered
 from .disclosure import STAFF_TEXT, for_student
 from .report import Report
+from .said_once import said_once
 
 WORDS = {
     "passed": ("passed", "&#10003; passed"),
@@ -53,13 +54,15 @@ def render_page(report: Report) -> str:
     parts = [HEAD, STYLE, f"<title>{e(report.assignment)} {e(report.student)}</title></head><body>"]
     parts.append(f"<h1>{e(report.assignment)} {e(report.title)}</h1><p>{e(report.student)}</p>")
     parts.append(_score(report))
-    parts += [f'<p class="note">{e(remark)}</p>' for remark in report.remarks]
+    once = said_once(report.checks, report.remarks, for_student)
+    notes = (*once.faults, *report.remarks)
+    parts += [f'<p class="note">{e(note)}</p>' for note in notes]
     task = ""
-    for outcome in report.checks:
+    for outcome in once.checks:
         if outcome.task != task:
             task = outcome.task
             parts.append(f"<h2>Task {e(task)}</h2>")
-        parts.append(_check(for_student(outcome)))
+        parts.append(_check(outcome))
     if report.questions:
         parts.append("<h2>Questions</h2>")
         parts += [_question(question) for question in report.questions]

@@ -9,8 +9,9 @@ from rich.text import Text
 
 from ..grading.outcome import Outcome
 from ..printable import printable
-from ..student.terminal import print_outcome
+from ..student.terminal import MARKS, OutcomePrinter
 from .report import Report
+from .said_once import BELOW, said_once
 
 
 def print_report(report: Report, console: Console) -> None:
@@ -23,18 +24,23 @@ def print_report(report: Report, console: Console) -> None:
     _line(console, f"{report.student}: {report.assignment} {report.title}", "bold")
     said = f" ({report.isolation})" if report.isolation else ""
     _line(console, f"isolation mode {report.mode}{said}, submission {report.submission[:12]}")
-    for remark in report.remarks:
+    once = said_once(report.checks, report.remarks)
+    for remark in (*once.faults, *report.remarks):
         _line(console, f"note: {remark}", "yellow")
     for name in report.ignored:
         _line(console, f"ignored: {name}")
-    for outcome in report.checks:
-        print_outcome(safe(outcome), console)
+    for note in report.staff:
+        _line(console, f"staff: {note}", "magenta")
+    printer = OutcomePrinter(console)
+    for outcome in once.checks:
+        if outcome.text == BELOW:
+            _line(console, f"{MARKS[outcome.status][0]} {outcome.id:<20} {outcome.title}")
+        else:
+            printer.outcome(safe(outcome))
     for question in report.questions:
         said = f" ({question.text})" if question.text else ""
         points = f"{question.points:g} of {question.max:g}"
         _line(console, f"{question.id} {question.kind}: {question.status}, {points}{said}")
-    for note in report.staff:
-        _line(console, f"staff: {note}", "magenta")
     _line(console, score_text(report), "bold")
 
 

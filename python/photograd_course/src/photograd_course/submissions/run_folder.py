@@ -3,7 +3,7 @@
 records/NAME.json   one sealed record a submission, written as soon as it is judged
 earlier/            the records of the run before, for the table of differences
 pages/NAME.html     one page a submission
-grades.csv  changes.csv  similarity.csv  run.json
+grades.csv  ignored.csv  changes.csv  similarity.csv  gradebook.csv  unmatched.csv  run.json
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
     for name in wanted_names(manifest):
         if name not in raw:
             if name == module:
-                problem = f"there is no {module} in the submission: hand in a file of this name"
+                problem = missing_module(manifest)
             elif name in manifest.submission and _matters(manifest, name):
                 warnings.append(f"{name} is missing")
             continue
@@ -81,6 +81,15 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
         else:
             warnings.append(f"{fault}; it was left out")
     return Submission(files, problem, tuple(warnings), _shortened(ignored))
+
+
+def missing_module(manifest: Manifest) -> str:
+    """What is said about a submission without the graded module, where nothing better is known.
+
+    Args:
+        manifest: of the assignment.
+    """
+    return f"there is no {manifest.module}.py in the submission: hand in a file of this name"
 
 
 def refused(text: str, ignored: Collection[str] = ()) -> Submission:

@@ -7,18 +7,21 @@ speaks for itself: "ready" names the layers of isolation that it has found to ho
 
 from __future__ import annotations
 
+import ast
 import importlib
 import sys
 from types import ModuleType
 from typing import Any
 
+from . import refused
 from .adjoint_rule import breaches
+from .adjoint_watch import Watch
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
 from .layouts import laid_out, without_functions
 from .modules import SourceFinder, line_of
-from .screen import forbidden_imports
+from .screen import without_forbidden
 
 LONGEST_MESSAGE = 2000
 
@@ -35,15 +38,20 @@ def main() -> None:
         channel.send("screened", breaches(request.value["sources"], request.value["adjoints"]))
         request = channel.receive()
     load = request.value
-    modules = load_modules(channel, load)
+    trees: dict[str, ast.Module] = {}
+    modules = load_modules(channel, load, trees)
     if modules is None:
         return
+    watch = Watch(load["sources"], load["substitutes"], trees)
     while True:
         try:
             request = channel.receive()
         except EOFError:
             return
-        answer(channel, modules, request.value, list(load["sources"]))
+        if request.kind == "watch":
+            answer_watched(channel, watch, request.value)
+        else:
+            answer(channel, modules, request.value, list(load["sources"]))
 
 
 def apply(policy: Any, channel: Channel) -> list[str]:
@@ -57,30 +65,32 @@ def apply(policy: Any, channel: Channel) -> list[str]:
     return confine(policy, channel.descriptors)
 
 
-def load_modules(channel: Channel, load: dict[str, Any]) -> dict[str, ModuleType] | None:
-    """Import the submission, and put the grader's functions in the place of substituted ones."""
+def load_modules(
+    channel: Channel, load: dict[str, Any], trees: dict[str, ast.Module]
+) -> dict[str, ModuleType] | None:
+    """Import the submission, and put the grader's functions in the place of substituted ones.
+
+    "loaded" names the imports that bind stand-ins; ``trees`` gets the modules that have some.
+    """
     sources: dict[str, str] = load["sources"]
-    own, graded = list(sources), load["graded"]
+    own, problems = list(sources), []
     try:
-        problems = []
-        for name in graded:
-            problems += forbidden_imports(name, sources[name], load["allowed"], own)
+        for name in load["graded"]:
+            trees[name], found = without_forbidden(name, sources[name], load["allowed"], own)
+            problems += found
     except BaseException as error:
         channel.send("unreadable", describe(error, own))
         return None
-    if problems:
-        channel.send("forbidden", problems)
-        return None
-    sys.meta_path.append(SourceFinder(sources))
+    sys.meta_path.append(SourceFinder(sources, trees))
     try:
-        modules = {name: importlib.import_module(name) for name in sources}
+        modules = refused.load(lambda: {name: importlib.import_module(name) for name in sources})
     except BaseException as error:
         channel.send("broken", describe(error, own))
         return None
     for function, stub in load["substitutes"].items():
         module, _, attribute = function.rpartition(".")
         setattr(modules[module], attribute, stub)
-    channel.send("loaded", None)
+    channel.send("loaded", problems)
     return modules
 
 
@@ -107,6 +117,15 @@ def answer(
         channel.send("result", value)
     except FrameError as error:
         channel.send("unsendable", str(error))
+
+
+def answer_watched(channel: Channel, watch: Watch, request: dict[str, Any]) -> None:
+    """Call the function of ``request`` in ``watch`` and send, by ``channel``, value and trace."""
+    try:
+        value, trace = watch.run(request["function"], request["args"], request["puts"])
+        channel.send("result", {"value": value, "trace": trace})
+    except BaseException as error:
+        channel.send("raised", describe(error, []))
 
 
 def describe(error: BaseException, own: list[str]) -> dict[str, Any]:

@@ -4,9 +4,9 @@ Three ways to get a derivative without writing it leave marks: a complex step ha
 part, a dual number is a class that overloads arithmetic, and differencing moves an argument by a
 small step and divides a difference by it. Looked at are an adjoint and all that it names of the
 submission, directly, by an alias, as an attribute or in a string. Small constants in other places
-(a floor, a learning rate) are no marks. The worker looks before it loads the submission, when
-nothing can yet speak for it. What is disguised better (a contour integral, a step read from the
-data) is left to the check of the cost.
+(a floor, a learning rate) are no marks, nor is a class that keeps what its numbers were computed
+from: a tape. The worker looks before it loads the submission, when nothing can yet speak for it.
+What is disguised better is seen when it runs (`adjoint_watch`).
 """
 
 from __future__ import annotations
@@ -20,6 +20,13 @@ OVERLOADS = frozenset(
     f"__{name}__" for name in ("mul", "rmul", "matmul", "truediv", "array_ufunc", "array_function")
 )
 ARRAY_BASES = frozenset(("ndarray", "NDArrayOperatorsMixin"))
+INTERNALS = frozenset(
+    (
+        *("__globals__", "__code__", "__closure__", "__builtins__", "__subclasses__"),
+        *("_getframe", "f_back", "f_globals", "f_locals", "gi_frame", "tb_frame"),
+        *("builtins", "eval", "exec"),  # of pure modules, such as dataclasses.builtins
+    )
+)
 DYNAMIC = frozenset(
     ("eval", "exec", "compile", "globals", "locals", "vars", "__import__", "__builtins__")
 )
@@ -150,6 +157,10 @@ def _is_dynamic(node: ast.AST) -> bool:
     """Whether it runs text, or names something by a text that is not written out."""
     if isinstance(node, ast.Name):
         return node.id in DYNAMIC
+    if isinstance(node, ast.Attribute):
+        return node.attr in INTERNALS
+    if isinstance(node, ast.alias):
+        return node.name.rpartition(".")[2] in INTERNALS
     if isinstance(node, ast.Call) and name_of(node.func) in ("getattr", "setattr"):
         return len(node.args) > 1 and not isinstance(node.args[1], ast.Constant)
     return False
@@ -158,15 +169,37 @@ def _is_dynamic(node: ast.AST) -> bool:
 def _is_dual(node: ast.AST, values: Values) -> bool:
     """A class that overloads arithmetic, or a way to make one without a class statement."""
     if isinstance(node, ast.ClassDef):
-        names = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+        functions = [each for each in node.body if isinstance(each, ast.FunctionDef)]
+        names = {each.name for each in functions}
         bound = (_bound(each) for each in node.body if isinstance(each, ast.Assign))
         names.update(*bound)
-        return bool(names & OVERLOADS or {values.name(base) for base in node.bases} & ARRAY_BASES)
+        if {values.name(base) for base in node.bases} & ARRAY_BASES:
+            return True
+        return bool(names & OVERLOADS) and not any(map(_keeps_operands, functions))
     if isinstance(node, ast.Call):
         return values.name(node.func) == "type" and len(node.args) == 3
     if isinstance(node, ast.Attribute):
         return isinstance(node.ctx, ast.Store) and node.attr in OVERLOADS
     return isinstance(node, ast.Constant) and node.value in OVERLOADS
+
+
+def _keeps_operands(function: ast.FunctionDef) -> bool:
+    """Whether an operator passes itself on, as a tape does: in a tuple, a call or a function."""
+    if function.name not in OVERLOADS or not function.args.args:
+        return False
+    own = function.args.args[0].arg
+    for node in ast.walk(function):
+        if isinstance(node, (ast.Tuple, ast.List)):
+            held = node.elts
+        elif isinstance(node, ast.Call) and name_of(node.func) != "isinstance":
+            held = node.args
+        elif isinstance(node, (ast.Lambda, ast.FunctionDef)) and node is not function:
+            held = [each for each in ast.walk(node) if isinstance(each, ast.expr)]
+        else:
+            continue
+        if any(isinstance(each, ast.Name) and each.id == own for each in held):
+            return True
+    return False
 
 
 def _sets_imaginary(node: ast.AST, values: Values) -> bool:

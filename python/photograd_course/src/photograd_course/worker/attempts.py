@@ -69,6 +69,18 @@ def read(path: str) -> str:
     return f"what is in {path}"
 
 
+def find(path: str) -> str:
+    """Size and time of what lies at `path`, in whatever way."""
+    ways = (os.stat, os.lstat, os.readlink, os.statvfs, os.chdir)
+    for way in ways:
+        try:
+            way(path)
+        except OSError:
+            continue
+        return f"size and time of {path}"
+    return f"the name of {path}" if os.access(path, os.F_OK) else ""
+
+
 def write(folder: str) -> str:
     """A file in a folder."""
     try:

@@ -35,10 +35,13 @@ def confine(policy: dict[str, Any], keep: set[int]) -> list[str]:
         kernel.unshare(policy["unshare"])
     after = namespace_ids()
     rules = landlock.open_ruleset([*policy["readable"], "."]) if policy["landlock"] else None
+    if policy["own_root"]:
+        enter_empty_root()
     for name, amount in policy["limits"].items():
         limit(name, amount)
     if policy["uid"] is not None:
         become(policy["uid"])
+    kernel.drop_capabilities()
     kernel.prctl(kernel.PR_SET_NO_NEW_PRIVS, 1)
     kernel.prctl(kernel.PR_SET_DUMPABLE, 0)
     kernel.prctl(kernel.PR_SET_PDEATHSIG, 9)  # changing the uid has cleared it
@@ -58,6 +61,12 @@ def close_descriptors(keep: set[int]) -> None:
     for kept in (*sorted(keep), HIGHEST_DESCRIPTOR):
         os.closerange(start, kept)
         start = kept + 1
+
+
+def enter_empty_root() -> None:
+    """Make the empty working folder all that there is: names, sizes and times of files, too."""
+    os.chroot(".")
+    os.chdir("/")
 
 
 def limit(name: str, amount: int) -> None:
@@ -99,8 +108,12 @@ def confirm(policy: dict[str, Any]) -> list[str]:
         layers.append("user")
     if kernel.prctl(kernel.PR_GET_NO_NEW_PRIVS) == 1:
         layers.append("no new privileges")
+    if kernel.capabilities() == 0:
+        layers.append("capabilities")
     if policy["landlock"] and not can_read(policy["canary"]):
         layers.append("files")
+    if policy["own_root"] and not os.path.lexists(policy["canary"]):
+        layers.append("names of files")
     if policy["filter"] is not None and filter_holds():
         layers.append("system calls")
     if policy["own_mounts"] and not can_read(policy["canary"]):

@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Any
 
 from .program import install_program
+from .watchdog import Watchdog
 
 try:
     import fcntl
@@ -32,6 +33,7 @@ class WorkerHome:
         program: what `program.plain_command` takes.
         imports: modules that graded code may import, loaded before reading ends.
         canary: a file that anybody may read by its mode, and no confined worker must.
+        watchdog: ends its workers if this process is killed.
     """
 
     def __init__(self, imports: Sequence[str] = ()) -> None:
@@ -44,6 +46,7 @@ class WorkerHome:
         self.canary = self.folder / "canary"
         self.canary.write_text("read by a worker that should not be able to\n", encoding="utf-8")
         self.canary.chmod(0o644)
+        self.watchdog = Watchdog()
         self._users: Any = None
 
     def __enter__(self) -> WorkerHome:
@@ -59,6 +62,7 @@ class WorkerHome:
 
     def close(self) -> None:
         """Remove it all, and give the user ids back."""
+        self.watchdog.close()
         remove_tree(self.folder)
         if self._lock >= 0:
             os.close(self._lock)

@@ -43,6 +43,12 @@ def open_worker(
     """
     policy = policy_of(home, mode, limits, slot)
     room = home.scratch()
+
+    def ended() -> None:
+        if mode != "E":
+            home.watchdog.forget(worker.pid)
+        remove_tree(room)
+
     try:
         worker = WorkerProcess(
             _command(home, mode),
@@ -52,12 +58,14 @@ def open_worker(
             seconds=limits.seconds,
             max_body=max_body,
             longest_log=limits.output_kb << 10,
-            on_end=lambda: remove_tree(room),
+            on_end=ended,
         )
     except (OSError, subprocess.SubprocessError) as error:
         remove_tree(room)
         raise GraderFault(f"mode {TITLES[mode]}: a worker cannot be started: {error}") from error
     try:
+        if mode != "E":  # which promises nothing, and runs on any system
+            home.watchdog.watch(worker.pid)
         _wait_until_ready(worker, mode, policy, min(START_SECONDS, limits.seconds))
     except BaseException:
         worker.kill()
@@ -80,7 +88,7 @@ def policy_of(home: WorkerHome, mode: str, limits: Limits, slot: int) -> Policy:
 
     root = os.geteuid() == 0
     own_user = root and mode != "D"
-    layers = {"limits", "no new privileges"}
+    layers = {"limits", "no new privileges", "capabilities"}
     program = _filter(optional=mode == "A")
     if program is not None:
         layers.add("system calls")
@@ -89,6 +97,9 @@ def policy_of(home: WorkerHome, mode: str, limits: Limits, slot: int) -> Policy:
     unshare = ("network", "ipc", "uts") if mode == "B" else ()
     if unshare:
         layers.add("namespaces")
+    own_root = mode in "BC" and may_change_root()
+    if own_root:
+        layers.add("names of files")
     files = mode != "A" and landlock.version() > 0
     if files:
         layers.add("files")
@@ -99,12 +110,20 @@ def policy_of(home: WorkerHome, mode: str, limits: Limits, slot: int) -> Policy:
         uid=home.uid(slot) if own_user else None,
         limits=resource_limits(limits, own_user=own_user),
         unshare=unshare,
-        readable=places.readable() if files else None,
+        readable=(() if own_root else places.readable()) if files else None,
         program=program,
         preload=home.imports,
         canary=str(home.canary),
         own_mounts=mode == "A",
+        own_root=own_root,
     )
+
+
+def may_change_root() -> bool:
+    """Whether this process has the right to give a worker an empty root folder."""
+    from . import kernel
+
+    return bool(kernel.capabilities() >> kernel.CAP_SYS_CHROOT & 1)
 
 
 def _filter(*, optional: bool) -> bytes | None:
@@ -119,6 +138,11 @@ def _filter(*, optional: bool) -> bytes | None:
             f"system calls cannot be filtered: {type(error).__name__}: {error} "
             "(pip install 'photograd-course[grader]', and the system's package libseccomp2)"
         ) from error
+
+
+def is_filtered(mode: str) -> bool:
+    """Whether workers of a mode have the filter of system calls here."""
+    return mode != "E" and _filter(optional=True) is not None
 
 
 def _command(home: WorkerHome, mode: str) -> list[str]:

@@ -51,9 +51,18 @@ def note(mode: str) -> str:
     """What staff should know about a mode on this machine; "" where there is nothing to say."""
     if mode == "E":
         return "nothing is enforced: the verdict is indicative only"
-    if mode in "BC":
-        from . import landlock
+    from . import landlock, launch
 
+    lines = []
+    if not launch.is_filtered(mode):
+        lines.append(
+            "no filter of system calls: bubblewrap alone holds "
+            "(pip install 'photograd-course[grader]', and the system's package libseccomp2)"
+        )
+    if mode == "D":
+        lines.append("names, sizes and times of this account's files can be seen")
+    if mode in "BC" and not launch.may_change_root():
+        lines.append("no right to change the root folder: names, sizes and times can be seen")
         if landlock.version() == 0:
-            return f"no Landlock: what everybody may read can be read, perhaps {COURSE}"
-    return ""
+            lines.append(f"no Landlock: what everybody may read can be read, perhaps {COURSE}")
+    return "; ".join(lines)

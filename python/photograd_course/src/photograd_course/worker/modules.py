@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.abc
 import importlib.machinery
 import importlib.util
@@ -10,12 +11,23 @@ import sys
 from collections.abc import Mapping, Sequence
 from types import CodeType, ModuleType
 
+from .refused import StandIn
+from .screen import STAND_IN
+
 
 class SourceFinder(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
-    """Finds the given modules, and only those; installed after all others, so it shadows none."""
+    """Finds the given modules, and only those; installed after all others, so it shadows none.
 
-    def __init__(self, sources: Mapping[str, str]) -> None:
+    Args:
+        sources: module name to text.
+        trees: what is run instead of the texts of some.
+    """
+
+    def __init__(
+        self, sources: Mapping[str, str], trees: Mapping[str, ast.Module] | None = None
+    ) -> None:
         self._sources = dict(sources)
+        self._trees = dict(trees or {})
         for name, text in self._sources.items():  # so that tracebacks can quote lines
             linecache.cache[f"{name}.py"] = (len(text), None, text.splitlines(True), f"{name}.py")
 
@@ -34,7 +46,17 @@ class SourceFinder(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         """The compiled module."""
-        return compile(self._sources[fullname], f"{fullname}.py", "exec", dont_inherit=True)
+        code = self._trees.get(fullname, self._sources[fullname])
+        return compile(code, f"{fullname}.py", "exec", dont_inherit=True)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Run a module, which finds under one more name what makes stand-ins.
+
+        Args:
+            module: as it was made by its spec.
+        """
+        setattr(module, STAND_IN, StandIn)
+        super().exec_module(module)
 
     def remove(self) -> None:
         """Forget the modules, so that others of the same names can be imported."""

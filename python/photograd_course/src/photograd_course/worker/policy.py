@@ -1,8 +1,8 @@
 """What each mode of isolation asks of a worker, and what it promises.
 
 A  bubblewrap: file systems, processes and network of its own
-B  root without it: another user, namespaces for network and shared memory
-C  root that may make no namespaces, as in a grading service's container: another user
+B  root without it: another user in an empty root folder, namespaces for network, shared memory
+C  root that may make no namespaces, as in a grading service's container: another user, empty root
 D  not root: the same user, confined by Landlock and the filter of system calls
 E  any system: a process of its own and nothing more; its verdicts are indicative only
 """
@@ -42,6 +42,7 @@ class Policy:
         preload: further modules to import.
         canary: a file that everybody may read by its mode, and the worker must not.
         own_mounts: whether the canary is hidden by mounts.
+        own_root: whether its working folder becomes the root of all that it can name.
     """
 
     layers: frozenset[str]
@@ -53,6 +54,7 @@ class Policy:
     preload: tuple[str, ...] = ()
     canary: str = ""
     own_mounts: bool = False
+    own_root: bool = False
 
     def to_frame(self) -> dict[str, Any] | None:
         """As the worker's `confine` reads it; None asks for nothing."""
@@ -69,6 +71,7 @@ class Policy:
             "preload": list(self.preload),
             "canary": self.canary,
             "own_mounts": self.own_mounts,
+            "own_root": self.own_root,
         }
 
 

@@ -2,11 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 
 # With the modules that these, NumPy and the interpreter import only on first use.
-NUMPY = ("numpy.fft", "numpy.linalg", "numpy.ma", "numpy.polynomial", "numpy.random")
+NUMPY = (
+    "numpy.char",
+    "numpy.ctypeslib",
+    "numpy.fft",
+    "numpy.lib.recfunctions",
+    "numpy.linalg",
+    "numpy.ma",
+    "numpy.polynomial",
+    "numpy.random",
+    "numpy.rec",
+    "numpy.typing",
+)
 STANDARD = (
+    "_strptime",
     "abc",
     "array",
     "ast",
@@ -53,5 +66,8 @@ CODECS = ("ascii", "latin_1", "unicode_escape", "utf_8", "utf_8_sig", "utf_16", 
 
 def preload(more: list[str]) -> None:
     """Import all of it, and the modules that the assignment names."""
-    for name in (*NUMPY, *STANDARD, *more, *(f"encodings.{codec}" for codec in CODECS)):
+    for name in NUMPY:
+        with contextlib.suppress(ModuleNotFoundError):  # before NumPy 2, some are no modules yet
+            importlib.import_module(name)
+    for name in (*STANDARD, *more, *(f"encodings.{codec}" for codec in CODECS)):
         importlib.import_module(name)

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 PROC = Path("/proc")
+THREADS = 17  # field of `stat_fields`
 TICKS = 100  # of the fields of /proc/PID/stat per second, on every architecture Linux has
 
 
@@ -48,7 +49,8 @@ def of_user(uid: int) -> list[int]:
             continue
         fields = dict(line.split(":", 1) for line in lines if ":" in line)
         ids = {int(number) for number in fields.get("Uid", "").split()}
-        if uid in ids and not fields.get("State", "").strip().startswith(("Z", "X")):
+        ended = fields.get("State", "").strip().startswith(("Z", "X"))
+        if uid in ids and (not ended or int(fields.get("Threads", "1")) > 1):
             found.append(int(entry.name))
     return found
 
@@ -88,9 +90,12 @@ def run_delay(pid: int) -> float:
 
 
 def is_alive(pid: int) -> bool:
-    """Whether a process is there and no mere entry in a table."""
+    """Whether a process is there and no mere entry in a table.
+
+    One whose first thread has ended looks like a dead one, and lives on in its other threads.
+    """
     fields = stat_fields(pid)
-    return bool(fields) and fields[0] not in "ZX"
+    return bool(fields) and (fields[0] not in "ZX" or int(fields[THREADS]) > 1)
 
 
 def finish(process: subprocess.Popen[bytes]) -> None:

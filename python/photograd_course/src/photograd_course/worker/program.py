@@ -14,8 +14,12 @@ import numpy as np
 PROGRAM = (
     "__init__.py",
     "__main__.py",
+    "adjoint_probes.py",
     "adjoint_rule.py",
+    "adjoint_trace.py",
+    "adjoint_types.py",
     "adjoint_values.py",
+    "adjoint_watch.py",
     "boot.py",
     "channel.py",
     "codec.py",
@@ -26,6 +30,7 @@ PROGRAM = (
     "layouts.py",
     "modules.py",
     "preload.py",
+    "refused.py",
     "screen.py",
 )
 # One thread: a mathematics library that starts more would meet the limits on memory and processes.
@@ -34,6 +39,7 @@ ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
     "PYTHONHASHSEED": "0",
+    "PYTHON_DISABLE_REMOTE_DEBUG": "1",
     "PYTHONUTF8": "1",
 }
 

@@ -91,9 +91,12 @@ def _attempts(
     yield "signal_process", os.getpid()
     yield "look_into_process", os.getpid()
     yield "read", str(private)
-    hidden = [COURSE] if {"files", "mounts"} & set(layers) else []
+    hidden = [COURSE] if {"files", "mounts", "names of files"} & set(layers) else []
     for secret in (*hidden, *secrets):
         yield "read", str(secret)
+    if {"mounts", "names of files"} & set(layers):
+        for path in (str(private), str(COURSE), *map(str, secrets)):
+            yield "find", path
     for folder in (tempfile.gettempdir(), str(home.folder), "/dev/shm", "/tmp", "."):
         yield "write", folder
     yield ("count_descriptors",)

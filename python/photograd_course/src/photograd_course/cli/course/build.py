@@ -34,8 +34,9 @@ def register(course: typer.Typer) -> None:
         secret_file: Annotated[
             Path | None,
             typer.Option(
-                help="The course secret; by default $PHOTOGRAD_COURSE_SECRET, else made beside "
-                "the output folder. Keep it: hidden seeds and seals come from it."
+                help="The course secret, made there if there is none; by default "
+                "$PHOTOGRAD_COURSE_SECRET, else OUT.secret/secret.txt beside the output folder. "
+                "Keep it: hidden seeds and seals come from it."
             ),
         ] = None,
         update_hints: Annotated[

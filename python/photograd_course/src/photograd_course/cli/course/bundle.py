@@ -32,7 +32,11 @@ def register(course: typer.Typer) -> None:
             Path | None, typer.Option(help="The zip; by default NN_KIND.zip in this folder.")
         ] = None,
         secret_file: Annotated[
-            Path | None, typer.Option(help="The course secret; as for 'course build'.")
+            Path | None,
+            typer.Option(
+                help="The course secret, made there if there is none; by default that of "
+                "'course build', else course.secret/secret.txt beside the zip."
+            ),
         ] = None,
         wheels: Annotated[
             Path | None, typer.Option(help="Wheels of the dependencies, for a build offline.")

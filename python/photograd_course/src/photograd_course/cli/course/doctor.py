@@ -26,8 +26,9 @@ def register(course: typer.Typer) -> None:
         """Run everything that the course rests on, and count.
 
         Each assignment: checks, mutants killed, alternatives accepted, margins of tolerances, and
-        its solution graded in isolation. Then the attacks on the grader, in each strict isolation
-        mode that works here. Exit code 1 where anything is missing or broken.
+        its solution graded in isolation; those of your own folder where $PHOTOGRAD_ASSIGNMENTS
+        names one. Then the attacks on the grader, in each strict isolation mode that works here.
+        Exit code 1 where anything is missing or broken.
         """
         from ...submissions.doctor import examine
         from ...submissions.doctor_report import print_examination

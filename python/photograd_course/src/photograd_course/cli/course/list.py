@@ -19,7 +19,7 @@ def register(course: typer.Typer) -> None:
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
-        """List the assignments that can be started here, with hours and prerequisites."""
+        """List the assignments that can be started here, with estimated hours and prerequisites."""
         from ...build.kits import find_kit, list_kits
         from ..output import emit
 
@@ -28,7 +28,7 @@ def register(course: typer.Typer) -> None:
             {
                 "id": manifest.id,
                 "title": manifest.title,
-                "hours": manifest.hours,
+                "estimated_hours": manifest.hours,
                 "after": " ".join(manifest.prerequisites) or "-",
                 "folder": manifest.folder_name,
             }

@@ -30,9 +30,9 @@ def register(course: typer.Typer) -> None:
         from rich.console import Console
 
         from ...build.kits import find_kit
+        from ...student.asking import ask_where_one_can
         from ...student.folder import LOCK_NAME, find_folder
         from ...student.predictions import prediction_letters, write_lock
-        from ...student.session import ask
 
         bundle = find_kit(assignment).bundle
         work = find_folder(bundle.manifest, folder)
@@ -42,7 +42,7 @@ def register(course: typer.Typer) -> None:
             return
         made, lacking = prediction_letters(bundle.questions, work.answers()[1])
         if lacking:
-            made = {**made, **ask(lacking, work, console)}
+            made = {**made, **ask_where_one_can(lacking, work, console)}
         if made:
             write_lock(work.path, bundle.manifest.id, made)
             console.print(f"{len(made)} predictions locked.", soft_wrap=True)

@@ -30,7 +30,8 @@ def register(course: typer.Typer) -> None:
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
         """Pack the files that count into a zip archive, and say what is still open."""
-        from ...build.kits import find_kit
+        from ...build.kits import find_kit, list_manifests
+        from ...student.comparing import differences, said_of_difference
         from ...student.folder import find_folder
         from ...student.next_steps import next_steps
         from ...student.packing import pack
@@ -40,18 +41,25 @@ def register(course: typer.Typer) -> None:
         bundle = find_kit(assignment).bundle
         work = find_folder(bundle.manifest, folder)
         files = work.files()
+        found = differences(work, list_manifests())
         target = out or work.path / f"{bundle.manifest.folder_name}_submission.zip"
-        digest = pack(files, target)
+        notes = [
+            *notes_before_submission(bundle, work),
+            *(said_of_difference(each, bundle.manifest.id) for each in found),
+        ]
+        student = work.answers()[0]
+        digest, kept = pack(files, target)
+        if kept is not None:
+            note(f"your earlier archive is kept as {kept.name}")
         if lacking := [name for name in bundle.manifest.submission if name not in files]:
             note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
-        notes = notes_before_submission(bundle, work)
         for text in notes:
             note(text, style="yellow")
         result: dict[str, object] = {"notes": len(notes)} if notes or as_json else {}
         emit(
             {
                 "archive": target,
-                "student": work.answers()[0],
+                "student": student,
                 "files": " ".join(sorted(files)),
                 **result,
                 "sha256": digest,

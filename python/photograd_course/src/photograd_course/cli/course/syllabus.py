@@ -1,4 +1,4 @@
-"""``photograd course syllabus``: weeks, hours and what comes before what."""
+"""``photograd course syllabus``: weeks, estimated hours and what comes before what."""
 
 from __future__ import annotations
 
@@ -13,17 +13,21 @@ def register(course: typer.Typer) -> None:
     """Add the command."""
 
     @course.command(
-        epilog="Example: photograd course syllabus --track semester",
-        short_help="Weeks, hours and prerequisites of a track.",
+        epilog="Example: photograd course syllabus semester",
+        short_help="Weeks, estimated hours and prerequisites of a track.",
     )
     def syllabus(
-        track: Annotated[
-            str, typer.Option(help="A track of course.toml, such as quarter or semester.")
-        ] = "quarter",
+        name: Annotated[
+            str | None,
+            typer.Argument(metavar="[TRACK]", help="Such as quarter (the default) or semester."),
+        ] = None,
+        track: Annotated[str | None, typer.Option(help="The same, as an option.")] = None,
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
-        """Print the weeks of a track: assignment, hours, prerequisites, ready or planned."""
+        """Print the weeks of a track: assignment, estimated hours, prerequisites, state."""
         from ...build.syllabus import print_syllabus
 
-        print_syllabus(track, as_json=as_json)
+        if name is not None and track not in (None, name):
+            raise typer.BadParameter(f"--track {track} and {name}: give one of them")
+        print_syllabus(name or track or "quarter", as_json=as_json)

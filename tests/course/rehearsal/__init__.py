@@ -1,0 +1,1 @@
+"""A whole class, fabricated, handed in and graded."""
