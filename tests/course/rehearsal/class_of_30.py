@@ -15,12 +15,37 @@ from photograd_course.build.regions import find_regions, strip_solution
 
 # Invented; accents, a space, an apostrophe and two of one name are what registers hold.
 NAMES = (
-    "Ada Abel", "Björn Åkesson", "Chloé Dubois", "Dmitri Orlov", "Emre Yılmaz", "Fatima Zahra",
-    "Gustavo Peña", "Hana Sato", "Ivo Novák", "Jun Li", "Jun Li", "Kofi Mensah", "Lena Groß",
-    "Maeve O'Brien", "Nikos Pappas", "Olga Sidorova", "Priya Rao", "Quentin Roy", "Rosa Marín",
-    "Søren Dahl", "Tomáš Dvořák", "Uma Iyer", "Vera Lindqvist", "Wei Zhang", "Xenia Vlachou",
-    "Yusuf Demir", "Zoë de Vries", "Amara Okafor", "Bao Nguyen", "Carla Bruno",
-)  # fmt: skip
+    "Ada Abel",
+    "Björn Åkesson",
+    "Chloé Dubois",
+    "Dmitri Orlov",
+    "Emre Yılmaz",
+    "Fatima Zahra",
+    "Gustavo Peña",
+    "Hana Sato",
+    "Ivo Novák",
+    "Jun Li",
+    "Jun Li",
+    "Kofi Mensah",
+    "Lena Groß",
+    "Maeve O'Brien",
+    "Nikos Pappas",
+    "Olga Sidorova",
+    "Priya Rao",
+    "Quentin Roy",
+    "Rosa Marín",
+    "Søren Dahl",
+    "Tomáš Dvořák",
+    "Uma Iyer",
+    "Vera Lindqvist",
+    "Wei Zhang",
+    "Xenia Vlachou",
+    "Yusuf Demir",
+    "Zoë de Vries",
+    "Amara Okafor",
+    "Bao Nguyen",
+    "Carla Bruno",
+)
 MUTANTS = 5
 
 
