@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from photograd_course import explore
 from photograd_course.errors import RangeError
-from photograd_course.explore.one_thread import ONE_THREAD
 from photograd_course.explore.options import parse
+from photograd_course.one_thread import ONE_THREAD
 
 from course.student.explored import FOLDERS, NUMBERS, finished_kit, stated_options
 from course.student.explored import explore as run

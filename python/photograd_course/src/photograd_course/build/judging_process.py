@@ -17,6 +17,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from ..one_thread import ONE_THREAD
+
 PRINTED = 2000  # characters, from the end, that are worth telling
 
 
@@ -85,13 +87,12 @@ class Program:
         if self._process is None:
             program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
             # One thread for linear algebra: two run at a time, and the bits stay the same.
-            threads = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
             self._process = subprocess.Popen(
                 program,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._printed,
-                env={**os.environ, **threads},
+                env={**os.environ, **ONE_THREAD},
                 start_new_session=True,
             )
             self._lines = queue.SimpleQueue()

@@ -1,8 +1,4 @@
-"""One thread for the linear algebra of NumPy.
-
-Matrices of the course are small: several threads spend their time waiting for each other, and on a
-busy machine a training takes ten times as long. `check` and the grader use one thread too.
-"""
+"""One thread for linear algebra in an exploration, as `check` and the grader have it."""
 
 from __future__ import annotations
 
@@ -10,14 +6,7 @@ import importlib
 import os
 import sys
 
-# Read once, when the library is loaded: OpenBLAS, OpenMP, MKL, BLIS, and Apple's Accelerate.
-ONE_THREAD = {
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "BLIS_NUM_THREADS": "1",
-    "VECLIB_MAXIMUM_THREADS": "1",
-}
+from ..one_thread import ONE_THREAD
 
 
 def use_one_thread() -> bool:

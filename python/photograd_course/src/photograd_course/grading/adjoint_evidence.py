@@ -17,7 +17,7 @@ from .shifted_copies import Copies, Seen
 
 VANISHED = 1e-3  # of its size before
 SHARE = 0.2  # of the numbers in a column of the answer that must change
-MOST = 0.6  # the same, where copies far from their bases have been put back
+FAR_SHARE = 0.6  # the same, where copies far from their bases have been put back
 TINY, FELT = 3e-4, 0.1  # shifts this small, relative, do not change a right number by so much
 FARTHEST = 0.9  # relative: of a multiple that a contour round a number may reach
 FITTED = 0.5  # the same, of places for a fit
@@ -95,11 +95,11 @@ def stages(values: Array, kinds: Kinds) -> Iterator[Stage]:
     many = kinds.additive.many(values).joined(multiples)
     turned = many.only(np.isin(many.base, many.base[values[many.member].imag != 0]))
     if len(turned.member):
-        yield _plain(close.joined(turned), MOST, 1 - VANISHED)
+        yield _plain(close.joined(turned), FAR_SHARE, 1 - VANISHED)
     fitted = many.within(FITTED, values).many(values)
     if len(fitted.member):
         copies = fitted.joined(close)
-        yield replace(_plain(copies, MOST, 1 - VANISHED), offsets=_offsets(copies, values))
+        yield replace(_plain(copies, FAR_SHARE, 1 - VANISHED), offsets=_offsets(copies, values))
 
 
 def _plain(copies: Copies, share: float, felt: float) -> Stage:

@@ -24,7 +24,7 @@ from .trial import Breach, Student
 
 MOVE = 2.0**-20  # relative: so small that nothing is sorted, rounded or cut otherwise
 AWAY = 1e-2
-LARGEST = 1 << 18  # bytes of arguments that are remembered
+MAX_BYTES = 1 << 18  # bytes of arguments that are remembered
 CALLS = 2  # watched in a check
 TRIES = 4  # of which some may show more numbers than are kept
 SECONDS = 20.0
@@ -78,7 +78,7 @@ class Remembering:
             return self.student.call(function, args, seconds=seconds)
         kept = Call(function, laid_out(list(args), "plain"), None)
         answer = self.student.call(function, args, seconds=seconds)
-        if kept.size <= LARGEST:
+        if kept.size <= MAX_BYTES:
             self.calls.append(Call(function, kept.args, answer))
         return answer
 

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 from functools import lru_cache
 
 AGREEMENT = 1e-6  # relative; so far a factor agrees with its name
-MOST = 9  # of numerators and denominators
+MAX_TERM = 9  # of numerators and denominators
 SYMBOLS = {
     "pi": math.pi,
     "ln 2": math.log(2.0),
@@ -54,8 +54,8 @@ def _known() -> tuple[tuple[float, str], ...]:
 
 
 def _names() -> Iterator[tuple[float, str]]:
-    for q in range(1, MOST + 1):
-        for p in range(1, MOST + 1):
+    for q in range(1, MAX_TERM + 1):
+        for p in range(1, MAX_TERM + 1):
             if math.gcd(p, q) == 1:
                 yield p / q, str(p) if q == 1 else f"{p}/{q}"
     for power in (100, 255, 256, 1000):

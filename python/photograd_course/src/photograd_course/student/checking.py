@@ -15,6 +15,7 @@ from ..grading.outcome import Outcome
 from ..grading.remote import RemoteStudent
 from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
+from ..one_thread import ONE_THREAD
 from ..suggest import choose_from
 from ..worker.process import WorkerProcess, install_program, plain_command, scratch_folder
 
@@ -86,6 +87,5 @@ def _environment() -> dict[str, str]:
     """What Python needs to start, and nothing that steers it; one thread for linear algebra."""
     needed = ("PATH", "SYSTEMROOT", "TEMP", "TMP", "HOME", "LANG", "LD_LIBRARY_PATH")
     kept = {name: os.environ[name] for name in needed if name in os.environ}
-    one = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     # Unbuffered, since a worker is ended and does not end: nothing printed is lost.
-    return {**kept, **one, "PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"}
+    return {**kept, **ONE_THREAD, "PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"}

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..one_thread import ONE_THREAD
+
 PROGRAM = (
     "__init__.py",
     "__main__.py",
@@ -35,9 +37,7 @@ PROGRAM = (
 )
 # One thread: a mathematics library that starts more would meet the limits on memory and processes.
 ENVIRONMENT = {
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
+    **ONE_THREAD,
     "PYTHONHASHSEED": "0",
     "PYTHON_DISABLE_REMOTE_DEBUG": "1",
     "PYTHONUTF8": "1",
